@@ -38,7 +38,7 @@ fn run() -> u8 {
             return u8::try_from(error.exit_code()).unwrap_or(REFUSED);
         }
     };
-    let terminal = Terminal::new(cli.color);
+    let terminal = Terminal::new(cli.color, cli.progress);
     match execute(&cli.command, terminal) {
         Ok(Verdict::Fits) => 0,
         Ok(Verdict::DoesNotFit) => 1,
@@ -56,6 +56,7 @@ fn run() -> u8 {
 fn execute(command: &Command, terminal: Terminal) -> Result<Verdict> {
     match command {
         Command::Limit(args) => command::limit::run(args, terminal),
+        Command::Watch(args) => command::watch::run(args, terminal),
         Command::Check(args) => command::check::run(args, terminal),
         Command::Report(args) => command::report::run(args, terminal),
         Command::Dialect(args) => command::dialect::run(args, terminal),

@@ -10,14 +10,21 @@ mod identify;
 #[cfg(unix)]
 mod interrupts;
 mod levels;
+#[cfg(unix)]
+mod linuxcnc_filter;
 mod machines;
 mod many;
 mod marks;
 mod prices;
+#[cfg(target_os = "linux")]
+mod progress;
 mod sets;
 mod sizes;
+#[cfg(unix)]
+mod slicers;
 mod verdicts;
 mod verifies;
+mod watches;
 mod ways;
 
 use std::fs::{self, File};
@@ -172,6 +179,7 @@ fn every_command_has_examples() {
         "limit",
         "check",
         "report",
+        "watch",
         "diff",
         "moves",
         "spindle",

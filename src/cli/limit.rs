@@ -15,6 +15,7 @@ Examples:
   gwatt limit part.ngc -m vmc --dry-run      show the edit as a diff
   gwatt limit part.ngc -m vmc --in-place     keep part.ngc.bak
   gwatt limit part.ngc -m vmc -o fit.ngc --html part.html
+  gwatt limit print.gcode -m printer --in-place --no-backup    as slicers call it
   gwatt limit - -m vmc < part.ngc > fit.ngc
   gwatt limit programs/ -m vmc -o fit        each program by itself
   gwatt limit a.nc b.nc -m vmc --with-subprograms -o fit    with O-numbers and macros
@@ -39,6 +40,10 @@ pub struct LimitArgs {
     /// Replace the program, and keep it as PROGRAM.bak
     #[arg(long)]
     pub in_place: bool,
+    /// With --in-place: keep no copy; for programs that write the file and hand it over, such
+    /// as slicers
+    #[arg(long, requires = "in_place", conflicts_with = "output")]
+    pub no_backup: bool,
     /// Write the files of subprograms that the programs call as well, all certified
     /// together: a subprogram of several programs gets what is right for all of them
     #[arg(long)]
@@ -63,6 +68,20 @@ pub struct LimitArgs {
     /// Draw the power over time before and after here
     #[arg(long, value_name = "FILE", conflicts_with = "with_subprograms")]
     pub svg: Option<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub how: HowArgs,
+    /// Write what can be lowered even if not all moves fit then; the exit status stays 1
+    #[arg(long)]
+    pub partial: bool,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub reading: ProgramArgs,
+}
+
+/// What is done about moves that do not fit.
+#[derive(Debug, Clone, Args)]
+pub struct HowArgs {
     /// What to lower
     #[arg(long, value_enum, default_value_t = Strategy::Optimal)]
     pub strategy: Strategy,
@@ -92,18 +111,12 @@ pub struct LimitArgs {
         value_parser = mark
     )]
     pub mark_rapids: Option<RapidMark>,
-    /// Write what can be lowered even if not all moves fit then; the exit status stays 1
-    #[arg(long)]
-    pub partial: bool,
     /// Which certificate is asked for [default: the best the controller allows]
     #[arg(long, value_enum)]
     pub certificate: Option<Certificate>,
-    #[command(flatten)]
-    #[allow(missing_docs)]
-    pub reading: ProgramArgs,
 }
 
-impl LimitArgs {
+impl HowArgs {
     /// What is to be done.
     pub fn options(&self) -> LimitOptions {
         LimitOptions {

@@ -16,11 +16,13 @@ mod plan;
 mod power_fit;
 mod program;
 mod programs;
+mod progress_arg;
 mod report;
 mod size;
 mod spindle;
 mod tune;
 mod verify;
+mod watch;
 
 use clap::{ColorChoice, Parser, Subcommand};
 use clap_complete::Shell;
@@ -32,7 +34,7 @@ pub use diff::DiffArgs;
 pub use excite::{ExciteArgs, ShapeArg, ValueName};
 pub use explain::ExplainArgs;
 pub use identify::{FrictionArg, IdentifyArgs, MethodArg, ModelArg};
-pub use limit::{Allow, Certificate, Law, LimitArgs, Strategy, allowed};
+pub use limit::{Allow, Certificate, HowArgs, Law, LimitArgs, Strategy, allowed};
 pub use machine::{ImportArgs, MachineCommand};
 pub use machine_new::{Kind, NewArgs};
 pub use moves::MovesArgs;
@@ -41,11 +43,13 @@ pub use plan::PlanArgs;
 pub use power_fit::PowerFitArgs;
 pub use program::{DeleteLevels, MachineArgs, ProgramArgs, StartArg};
 pub use programs::{ProgramsArgs, Shard};
+pub use progress_arg::ProgressArg;
 pub use report::ReportArgs;
 pub use size::SizeArgs;
 pub use spindle::SpindleArgs;
 pub use tune::{DiscretizeArg, TuneArgs};
 pub use verify::VerifyArgs;
+pub use watch::WatchArgs;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -70,6 +74,9 @@ pub struct Cli {
     /// When to use colours; `NO_COLOR` is respected
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = ColorChoice::Auto)]
     pub color: ColorChoice,
+    /// How to show the progress of long work; `-q` shows none
+    #[arg(long, global = true, value_enum, value_name = "HOW", default_value_t = ProgressArg::Auto)]
+    pub progress: ProgressArg,
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
@@ -80,6 +87,8 @@ pub struct Cli {
 pub enum Command {
     /// Write a program that fits, with as few edits as possible
     Limit(LimitArgs),
+    /// Limit the programs that appear in a folder into another one
+    Watch(WatchArgs),
     /// Say whether programs fit
     Check(CheckArgs),
     /// Say what each move of a program draws

@@ -14,6 +14,7 @@ use super::input::Program;
 use super::listing::Listing;
 use super::output::print;
 use super::page::{self, Pictures};
+use super::progress::{Meter, Progress};
 use super::settings::Settings;
 use super::setup::{Setup, machine_file, share_threads};
 use super::terminal::Terminal;
@@ -47,6 +48,7 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
         energy: args.format == Format::Jsonl,
         changes: args.format == Format::Sarif,
     };
+    let (_progress, one_done) = progress(&mut programs, terminal, args.quiet);
     let check = |program: &Program| check_program(program, &setup, wanted);
 
     let mut totals = Totals::default();
@@ -57,6 +59,9 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
             note,
             drawn,
         } = result;
+        if let Some(meter) = &one_done {
+            meter.add(1);
+        }
         baselines.take(&mut checked);
         if let (Some((rows, machine)), Ok(summary)) = (drawn, &checked.outcome)
             && let [program] = programs.as_slice()
@@ -118,6 +123,21 @@ fn pictures<'a>(args: &'a CheckArgs, programs: &[Program]) -> Result<Pictures<'a
     let outputs: Vec<&Path> = pictures.paths().chain([Path::new("-")]).collect();
     refuse_clashes(&inputs, &outputs)?;
     Ok(pictures)
+}
+
+/// What is read of the one program, or how many are done, which the meter is for.
+fn progress(
+    programs: &mut [Program],
+    terminal: Terminal,
+    quiet: bool,
+) -> (Progress, Option<Meter>) {
+    let shape = terminal.progress(quiet);
+    if let [program] = programs {
+        return (program.progress(shape, 1), None);
+    }
+    let progress = Progress::of_programs(shape, programs.len());
+    let meter = progress.meter();
+    (progress, Some(meter))
 }
 
 /// Warnings and refusals, with the lines under them.

@@ -1,7 +1,7 @@
 //! Programs to read: files, or standard input.
 
 use std::fs::{self, File};
-use std::io::{self, Read, Seek, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -9,12 +9,16 @@ use gwatt::diagnostic::excerpt;
 use gwatt::pipeline::Failure;
 use gwatt::source::MAX_LINE_BYTES;
 
+use super::progress::{Meter, Progress, Shape};
+
 /// A program that is to be read.
 #[derive(Debug)]
 pub struct Program {
     /// Its name as it was given, printable.
     pub name: String,
     source: Source,
+    /// Counts what is read of it.
+    meter: Option<Meter>,
 }
 
 #[derive(Debug)]
@@ -23,6 +27,8 @@ enum Source {
     File(PathBuf),
     /// Standard input, kept so that it can be read again.
     Kept(Mutex<File>),
+    /// A file as it was when it was copied.
+    Copy(PathBuf, Mutex<File>),
 }
 
 impl Program {
@@ -36,25 +42,42 @@ impl Program {
         Self {
             name: excerpt(path.as_os_str().as_encoded_bytes(), usize::MAX),
             source,
+            meter: None,
         }
     }
 
     /// Its path, unless it is standard input.
     pub fn path(&self) -> Option<&Path> {
         match &self.source {
-            Source::File(path) => Some(path),
+            Source::File(path) | Source::Copy(path, _) => Some(path),
             Source::Stdin | Source::Kept(_) => None,
         }
     }
 
+    /// Shows how much of it is read from now on, as a rule in so many passes.
+    pub fn progress(&mut self, shape: Shape, passes: u64) -> Progress {
+        let progress = Progress::of_bytes(shape, &self.name, self.bytes(), passes);
+        self.count_by(progress.meter());
+        progress
+    }
+
+    /// Has a meter count what is read of it from now on.
+    pub fn count_by(&mut self, meter: Meter) {
+        self.meter = Some(meter);
+    }
+
     /// Opens it for reading from the beginning. What cannot be jumped about in
     /// is copied first: programs with calls and loops need that.
-    pub fn open(&self) -> Result<File, Failure> {
-        match &self.source {
+    pub fn open(&self) -> Result<Input, Failure> {
+        let file = match &self.source {
             Source::Stdin => copied(&mut io::stdin().lock()),
             Source::File(path) => open_file(path),
-            Source::Kept(file) => reopened(file),
-        }
+            Source::Kept(file) | Source::Copy(_, file) => reopened(file),
+        };
+        Ok(Input {
+            file: file?,
+            meter: self.meter.clone(),
+        })
     }
 
     /// The folder that it lies in.
@@ -75,14 +98,46 @@ impl Program {
         Ok(())
     }
 
+    /// Copies its file: what happens to it later does not count.
+    pub fn copy(&mut self) -> Result<(), Failure> {
+        if let Source::File(path) = &self.source {
+            let copy = copied(&mut open_file(path)?)?;
+            self.source = Source::Copy(path.clone(), Mutex::new(copy));
+        }
+        Ok(())
+    }
+
     /// Its size in bytes; 0 for standard input that is not kept.
     pub fn bytes(&self) -> u64 {
         let metadata = match &self.source {
             Source::Stdin => return 0,
             Source::File(path) => fs::metadata(path),
-            Source::Kept(file) => held(file).metadata(),
+            Source::Kept(file) | Source::Copy(_, file) => held(file).metadata(),
         };
         metadata.map_or(0, |metadata| metadata.len())
+    }
+}
+
+/// A program that is read.
+#[derive(Debug)]
+pub struct Input {
+    file: File,
+    meter: Option<Meter>,
+}
+
+impl Read for Input {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = self.file.read(buffer)?;
+        if let Some(meter) = &self.meter {
+            meter.add(read as u64);
+        }
+        Ok(read)
+    }
+}
+
+impl Seek for Input {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
     }
 }
 

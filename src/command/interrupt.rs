@@ -1,6 +1,6 @@
 //! Temporary files with a name, and signals that end the run: the names go first.
 //!
-//! Signals are caught from the first such name on.
+//! Signals are caught from the first such name on, or from the first progress bar on.
 
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -16,6 +16,22 @@ static NAMES: LazyLock<Mutex<HashSet<PathBuf>>> = LazyLock::new(|| {
 fn names() -> MutexGuard<'static, HashSet<PathBuf>> {
     // A set of names is whole whatever happened.
     NAMES.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What is to be done before a signal ends the run.
+static BEFORE: Mutex<Option<fn()>> = Mutex::new(None);
+
+/// Has a signal that ends the run do this first.
+pub fn before_the_end(what: fn()) {
+    *BEFORE.lock().unwrap_or_else(PoisonError::into_inner) = Some(what);
+    LazyLock::force(&NAMES);
+}
+
+fn end() {
+    let before = *BEFORE.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(before) = before {
+        before();
+    }
 }
 
 /// Makes, renames or removes a file, so that no signal comes between that and the
@@ -43,6 +59,7 @@ mod unix {
         };
         let wait = move || {
             for signal in &mut signals {
+                super::end();
                 let names = super::names();
                 for name in &*names {
                     let _ = fs::remove_file(name);

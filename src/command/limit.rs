@@ -22,23 +22,23 @@ use super::rows::Rows;
 use super::settings::Settings;
 use super::setup::{Setup, machine_file};
 use super::terminal::{Messages, Terminal};
-use crate::cli::{LimitArgs, Strategy};
+use crate::cli::{HowArgs, LimitArgs, Strategy};
 
 /// Bytes that go to the spool at once.
 const SPOOL_BYTES: usize = 1 << 16;
 
+/// How often a program is read as a rule: what each line meets, the changes, the certificate.
+const PASSES: u64 = 3;
+
 /// Writes programs that fit.
 pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
-    ensure!(
-        args.preset_else.is_none() || matches!(args.strategy, Strategy::Preset),
-        "--preset-else goes with --strategy preset"
-    );
+    refuse_how(&args.how)?;
     let listing = Listing::of(&args.programs, terminal)?;
     let mut programs = listing.programs();
     let mut args = args.clone();
     let settings = Settings::of(&programs, terminal)?;
     settings.fill(&mut args.machine, &mut args.reading)?;
-    settings.allow(&mut args.allow);
+    settings.allow(&mut args.how.allow);
     let args = &args;
     if args.with_subprograms {
         return limit_set::run(args, &listing, terminal);
@@ -66,8 +66,9 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     dialect::settle(&mut setup, slice::from_mut(program), terminal)?;
     // Before a diff that follows them.
     let mut messages = terminal.direct();
-    let verdict = limit_one(args, &setup, program, &places, &mut messages)?;
-    Ok(verdict.unwrap_or(Verdict::Fits))
+    let _progress = program.progress(terminal.progress(args.quiet), PASSES);
+    let limited = limit_one(args, &setup, program, &places, &mut messages)?;
+    Ok(limited.verdict().unwrap_or(Verdict::Fits))
 }
 
 /// Limits several programs, each by itself, into a folder or in place.
@@ -86,14 +87,25 @@ fn limit_each(args: &LimitArgs, listing: &Listing, terminal: Terminal) -> Result
         at_once: if args.dry_run { 1 } else { usize::MAX },
     };
     each_by_itself(listing.programs(), places, setup, how, terminal, |it| {
-        limit_one(args, it.setup, it.program, it.places, it.messages)
+        let limited = limit_one(args, it.setup, it.program, it.places, it.messages)?;
+        Ok(limited.verdict())
     })
 }
 
-fn setup(args: &LimitArgs, terminal: Terminal) -> Result<Setup> {
+/// Refuses options that do not go together.
+pub fn refuse_how(how: &HowArgs) -> Result<()> {
+    ensure!(
+        how.preset_else.is_none() || matches!(how.strategy, Strategy::Preset),
+        "--preset-else goes with --strategy preset"
+    );
+    Ok(())
+}
+
+/// What programs are judged with.
+pub fn setup(args: &LimitArgs, terminal: Terminal) -> Result<Setup> {
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
-    setup.options.certificate = args.certificate.map(Into::into);
-    setup.options.rapid_mark.clone_from(&args.mark_rapids);
+    setup.options.certificate = args.how.certificate.map(Into::into);
+    setup.options.rapid_mark.clone_from(&args.how.mark_rapids);
     Ok(setup)
 }
 
@@ -108,14 +120,39 @@ fn places(args: &LimitArgs) -> Places {
     }
 }
 
-/// Limits a program by itself; `None` where it holds only subprograms.
-fn limit_one(
+/// What came of a program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Limited {
+    /// It is written; `looked_at` is false where it holds only subprograms.
+    Written {
+        /// Whether there was anything to judge.
+        looked_at: bool,
+    },
+    /// It cannot be made to fit.
+    DoesNotFit,
+    /// It cannot be read.
+    Refused,
+}
+
+impl Limited {
+    /// `None` where there was nothing to judge.
+    pub fn verdict(self) -> Option<Verdict> {
+        match self {
+            Self::Written { looked_at } => looked_at.then_some(Verdict::Fits),
+            Self::DoesNotFit => Some(Verdict::DoesNotFit),
+            Self::Refused => Some(Verdict::Refused),
+        }
+    }
+}
+
+/// Limits a program by itself.
+pub fn limit_one(
     args: &LimitArgs,
     setup: &Setup,
     program: &Program,
     places: &Places,
     messages: &mut Messages,
-) -> Result<Option<Verdict>> {
+) -> Result<Limited> {
     let report = places.csv.as_deref().map(Target::new).transpose()?;
     let pictures = places.pictures();
     pictures.check(setup)?;
@@ -127,7 +164,7 @@ fn limit_one(
         Ok(summary) => summary,
         Err(failure) => {
             dialect::failure(setup, program, &failure, messages);
-            return Ok(Some(Verdict::Refused));
+            return Ok(Limited::Refused);
         }
     };
     let mut spool = spool.into_inner().map_err(io::IntoInnerError::into_error)?;
@@ -143,7 +180,7 @@ fn limit_one(
             Err(page::Refused::Error(error)) => return Err(error),
             Err(page::Refused::Program(failure)) => {
                 dialect::failure(setup, program, &failure, messages);
-                return Ok(Some(Verdict::Refused));
+                return Ok(Limited::Refused);
             }
         }
     }
@@ -155,8 +192,13 @@ fn limit_one(
     if summary.certified || partly {
         deliver(args, program, &summary, spool, messages)?;
     }
-    let looked_at = !summary.before.only_subprograms();
-    Ok(looked_at.then_some(Verdict::of(summary.certified)))
+    Ok(if summary.certified {
+        Limited::Written {
+            looked_at: !summary.before.only_subprograms(),
+        }
+    } else {
+        Limited::DoesNotFit
+    })
 }
 
 /// The program as it is written goes to the spool, what its moves draw to the rows.
@@ -167,7 +209,7 @@ fn limited(
     spool: &mut BufWriter<Spool>,
     rows: &mut Rows,
 ) -> Result<LimitSummary, Failure> {
-    let how = args.options();
+    let how = args.how.options();
     let options = setup.options_for(program);
     let machine = &setup.machine;
     let mut summary = pipeline::limit(program.open()?, machine, &options, how, spool, rows.sink())?;
@@ -230,6 +272,9 @@ fn deliver(
     };
     if summary.edited_lines == 0 {
         return Ok(());
+    }
+    if args.no_backup {
+        return spool.deliver();
     }
     let backup = replace(path, spool)?;
     messages.note(format_args!(

@@ -27,8 +27,8 @@ pub fn run(args: &LimitArgs, listing: &Listing, terminal: Terminal) -> Result<Ve
     refuse_usage(args, &programs)?;
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
     dialect::settle(&mut setup, &mut programs, terminal)?;
-    setup.options.certificate = args.certificate.map(Into::into);
-    setup.options.rapid_mark.clone_from(&args.mark_rapids);
+    setup.options.certificate = args.how.certificate.map(Into::into);
+    setup.options.rapid_mark.clone_from(&args.how.mark_rapids);
     let mut set = Vec::with_capacity(programs.len());
     for program in &programs {
         match read(program, &setup) {
@@ -41,7 +41,7 @@ pub fn run(args: &LimitArgs, listing: &Listing, terminal: Terminal) -> Result<Ve
     }
     let report = args.report.as_deref().map(Target::new).transpose()?;
     let mut rows = Rows::new(report, args.json.as_deref())?;
-    let limited = limit_set(&set, &setup.machine, args.options(), rows.sink());
+    let limited = limit_set(&set, &setup.machine, args.how.options(), rows.sink());
     let limited = match limited {
         Ok(limited) => limited,
         Err(SetFailure { program, failure }) => {
@@ -183,10 +183,10 @@ fn deliver(
     }
     let backups = together.deliver()?;
     for backup in backups {
-        if args.in_place {
+        if args.in_place && !args.no_backup {
             terminal.note(format_args!("a file as it was is {}", backup.display()));
         } else {
-            // What stood in the folder before is replaced for good.
+            // What stood there before is replaced for good.
             let _ = fs::remove_file(&backup);
         }
     }

@@ -179,7 +179,7 @@ impl Listing {
 }
 
 /// Whether a file is a program by its name. Fanuc's and Haas' have no ending: `O1234`.
-fn is_program(path: &Path) -> bool {
+pub fn is_program(path: &Path) -> bool {
     let ending = path
         .extension()
         .map(|it| it.to_string_lossy().to_lowercase());

@@ -7,6 +7,7 @@ use super::dialect;
 use super::in_order::in_order;
 use super::input::Program;
 use super::places::Places;
+use super::progress::Progress;
 use super::setup::{Setup, share_threads};
 use super::terminal::{Messages, Terminal};
 
@@ -54,17 +55,26 @@ pub fn each_by_itself(
         } else {
             terminal.messages()
         };
-        let done = in_own_dialect(&setup, program, &mut messages, |setup, messages| {
-            places.make_folders()?;
-            work(OneOf {
-                setup,
-                program,
-                places,
-                messages,
-            })
-        });
+        let refused = Some(Verdict::Refused);
+        let done = in_own_dialect(
+            &setup,
+            program,
+            &mut messages,
+            refused,
+            |setup, messages| {
+                places.make_folders()?;
+                work(OneOf {
+                    setup,
+                    program,
+                    places,
+                    messages,
+                })
+            },
+        );
         (messages, done)
     };
+    let progress = Progress::of_programs(terminal.progress(how.quiet), jobs.len());
+    let one_done = progress.meter();
     let mut totals = Totals::default();
     in_order(&jobs, at_once, one, |(messages, done)| {
         let verdict = done
@@ -77,19 +87,23 @@ pub fn each_by_itself(
             terminal.error(format_args!("{error:#}"));
         }
         totals.count(verdict);
+        one_done.add(1);
         Ok(())
     })?;
+    drop(progress);
     terminal.text(&format!("{totals}\n"));
     Ok(totals.worst())
 }
 
-/// Does `work` with the program's own language where that is still to be chosen.
-fn in_own_dialect(
+/// Does `work` with the program's own language where that is still to be chosen; `refused`
+/// where it cannot be.
+pub fn in_own_dialect<T>(
     setup: &Setup,
     program: &Program,
     messages: &mut Messages,
-    work: impl FnOnce(&Setup, &mut Messages) -> Result<Option<Verdict>>,
-) -> Result<Option<Verdict>> {
+    refused: T,
+    work: impl FnOnce(&Setup, &mut Messages) -> Result<T>,
+) -> Result<T> {
     if !setup.auto {
         return work(setup, messages);
     }
@@ -102,7 +116,7 @@ fn in_own_dialect(
         }
         Err(failure) => {
             messages.failure(&program.name, &failure);
-            Ok(Some(Verdict::Refused))
+            Ok(refused)
         }
     }
 }

@@ -17,6 +17,7 @@ pub mod plan;
 pub mod spindle;
 pub mod tune;
 pub mod verify;
+pub mod watch;
 
 mod baselines;
 mod beside;
@@ -38,6 +39,7 @@ mod model_choice;
 mod output;
 mod page;
 mod places;
+mod progress;
 mod recorded;
 mod rows;
 mod series;
@@ -47,6 +49,7 @@ mod setup;
 mod signal;
 mod terminal;
 mod together;
+mod watched;
 
 pub use output::print;
 pub use terminal::{Shown, Terminal};

@@ -9,6 +9,7 @@ use gwatt::pipeline::Restart;
 
 use super::beside::Beside;
 use super::input::is_dash;
+use super::progress::around;
 
 /// Where a result is to go.
 #[derive(Debug, Clone)]
@@ -130,7 +131,7 @@ impl Spool {
                     .and_then(|out| copy(&file, out));
                 copied.with_context(|| format!("cannot write {}", path.display()))
             }
-            (_, body) => copy(body.file(), io::stdout().lock()).context(STDOUT),
+            (_, body) => around(|| copy(body.file(), io::stdout().lock())).context(STDOUT),
         }
     }
 }
@@ -156,7 +157,7 @@ fn copy(mut from: &File, mut to: impl Write) -> io::Result<()> {
 /// Lets `write` write to standard output, and makes sure that it arrives.
 pub fn print(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> anyhow::Result<()> {
     let mut out = io::BufWriter::new(io::stdout().lock());
-    write(&mut out).and_then(|()| out.flush()).context(STDOUT)
+    around(|| write(&mut out).and_then(|()| out.flush())).context(STDOUT)
 }
 
 /// Keeps the file at `path` under a name that is free, and says which. The file

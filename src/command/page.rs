@@ -1,7 +1,7 @@
 //! The page and the still picture of a program: what is gathered for them, and where they go.
 
 use std::fs::File;
-use std::io::{BufWriter, IntoInnerError, Write};
+use std::io::{BufWriter, IntoInnerError, Read, Seek, Write};
 use std::path::Path;
 
 use anyhow::{Context, Result};
@@ -94,7 +94,7 @@ impl Frames {
 
 /// The planned power of a program; `None` where it has too many moves to be followed.
 pub fn planned(
-    input: File,
+    input: impl Read + Seek + Send,
     machine: &Machine,
     options: &Options,
     duration_s: f64,

@@ -49,6 +49,8 @@ pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
     // It is read more than once: what `limit` would do is looked up in it.
     dialect::settle(&mut setup, slice::from_mut(program), terminal)?;
     let mut messages = terminal.direct();
+    let pictures = usize::from(places.pictures().is_any());
+    let _progress = program.progress(terminal.progress(args.quiet), 1 + 2 * pictures as u64);
     let done = report_one(args, &setup, program, &places, &mut messages)?;
     Ok(match done.unwrap_or(Verdict::Fits) {
         Verdict::DoesNotFit if !args.fail => Verdict::Fits,

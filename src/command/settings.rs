@@ -13,7 +13,7 @@ use super::terminal::Terminal;
 use crate::cli::{Allow, DeleteLevels, MachineArgs, ProgramArgs};
 
 /// Its name.
-const NAME: &str = "gwatt.toml";
+pub const NAME: &str = "gwatt.toml";
 
 /// Settings of the programs of a folder, and of the folders below it. What stands on the
 /// command line, or in `GWATT_MACHINE`, goes before them.
@@ -34,6 +34,11 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// The file that holds those of a folder.
+    pub fn file_of(folder: &Path) -> Option<PathBuf> {
+        nearest(folder)
+    }
+
     /// Those of programs, which must be the same for all of them.
     pub fn of(programs: &[Program], terminal: Terminal) -> Result<Self> {
         let mut folders = BTreeMap::new();

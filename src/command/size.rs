@@ -1,6 +1,5 @@
 //! `gwatt size`.
 
-use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::Path;
 
@@ -11,9 +10,10 @@ use gwatt::pipeline::size::{Job, Outcome, Size, Wish, size};
 use gwatt::report::{Verdict, chain, size_chart, size_csv, size_json, size_text, size_verdict};
 
 use super::clash::refuse_clashes;
-use super::input::{Program, is_dash};
+use super::input::{Input, Program, is_dash};
 use super::listing::Listing;
 use super::output::{Spool, Target, print};
+use super::progress::Progress;
 use super::settings::Settings;
 use super::setup::{Setup, machine_file, machine_name};
 use super::terminal::Terminal;
@@ -43,7 +43,12 @@ pub fn run(args: &SizeArgs, terminal: Terminal) -> Result<Verdict> {
         program.keep()?;
     }
     let wish = wish(args, &setup)?;
-    let jobs: Vec<Job<'_, File>> = programs
+    let bytes = programs.iter().map(Program::bytes).sum();
+    let progress = Progress::of_bytes(terminal.progress(false), "size", bytes, 1);
+    for program in &mut programs {
+        program.count_by(progress.meter());
+    }
+    let jobs: Vec<Job<'_, Input>> = programs
         .iter()
         .map(|program| Job {
             name: program.name.clone(),
@@ -55,6 +60,7 @@ pub fn run(args: &SizeArgs, terminal: Terminal) -> Result<Verdict> {
         Ok(found) => found,
         Err(failure) => bail!("{}", chain(&failure)),
     };
+    drop(progress);
     for (program, outcome) in &found.rating.programs {
         if let Outcome::Refused(failure) = outcome {
             terminal.failure(program, failure);

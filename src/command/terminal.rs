@@ -9,10 +9,14 @@ use gwatt::diagnostic::Diagnostic;
 use gwatt::pipeline::Failure;
 use gwatt::report::chain;
 
+use super::progress::{Shape, around};
+use crate::cli::ProgressArg;
+
 /// Where messages go.
 #[derive(Debug, Clone, Copy)]
 pub struct Terminal {
     colour: bool,
+    progress: Shape,
 }
 
 /// An error that has been told already.
@@ -22,7 +26,7 @@ pub struct Shown;
 
 impl Terminal {
     /// Colours when asked for, or when someone looks and does not mind.
-    pub fn new(choice: ColorChoice) -> Self {
+    pub fn new(choice: ColorChoice, progress: ProgressArg) -> Self {
         let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
         let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
         let colour = match choice {
@@ -30,7 +34,15 @@ impl Terminal {
             ColorChoice::Never => false,
             ColorChoice::Auto => io::stderr().is_terminal() && !set("NO_COLOR") && !dumb,
         };
-        Self { colour }
+        Self {
+            colour,
+            progress: Shape::of(progress),
+        }
+    }
+
+    /// How the progress of long work is shown, in a run that may be quiet.
+    pub fn progress(self, quiet: bool) -> Shape {
+        self.progress.quiet(quiet)
     }
 
     /// Messages that are not shown yet, in its colours.
@@ -69,7 +81,7 @@ impl Terminal {
     /// Text that has its line end.
     #[allow(clippy::unused_self, reason = "the terminal is what writes")]
     pub fn text(self, text: &str) {
-        let _ = io::stderr().write_all(text.as_bytes());
+        let _ = around(|| io::stderr().write_all(text.as_bytes()));
     }
 
     /// Findings in `file`, with the lines under them.
@@ -100,6 +112,20 @@ pub struct Messages {
 }
 
 impl Messages {
+    /// Messages without colours that are not shown.
+    pub fn plain() -> Self {
+        Self {
+            colour: false,
+            shown: None,
+            text: String::new(),
+        }
+    }
+
+    /// What was said so far, unless it was shown at once.
+    pub fn said(&self) -> &str {
+        &self.text
+    }
+
     /// A remark.
     pub fn note(&mut self, message: impl Display) {
         self.line(format_args!("gwatt: note: {message}"));

@@ -1,6 +1,8 @@
 //! A program's figures, and its moves.
 
+use std::collections::BTreeSet;
 use std::io::{Read, Seek};
+use std::path::PathBuf;
 use std::slice;
 
 use super::advice::{Adviser, Circumstances};
@@ -196,6 +198,31 @@ impl<'m, 'r> Analysis<'m, 'r> {
         summary.notes = notes;
         Ok(summary)
     }
+}
+
+/// Where the files of subprograms lie that a program reads, on any way through it; each once.
+///
+/// # Errors
+/// See [`Failure`].
+pub fn called_files<R: Read + Seek>(
+    mut input: R,
+    machine: &Machine,
+    options: &Options,
+) -> Result<Vec<PathBuf>, Failure> {
+    let ways = if has_ways(options) {
+        ways(&mut input, machine, options, false)?
+    } else {
+        vec![options.clone()]
+    };
+    let mut found = BTreeSet::new();
+    for way in &ways {
+        input.rewind().map_err(Failure::Input)?;
+        let mut front = Front::new(&mut input, machine, way);
+        while front.next_line()?.is_some() {}
+        found.extend(front.paths().iter().cloned());
+        front.finish()?;
+    }
+    Ok(found.into_iter().collect())
 }
 
 /// Reads a program and hands over every commanded move with its duration in s

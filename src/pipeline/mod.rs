@@ -56,7 +56,7 @@ mod looped_program;
 mod worst;
 mod writer;
 
-pub use analyze::{analyze, moves};
+pub use analyze::{analyze, called_files, moves};
 pub use assumptions::assumptions;
 pub use by_line::LineSummary;
 pub use drives::{
