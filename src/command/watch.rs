@@ -293,6 +293,15 @@ impl Shop {
             let called = program
                 .open()
                 .and_then(|input| pipeline::called_files(input, &setup.machine, &options));
+            // Their own results may have other feeds than the files that it was certified with.
+            for file in called.iter().flatten() {
+                messages.note(format_args!(
+                    "{}: it is certified with {} as that lies there; where that is changed too, \
+                     limit both by --with-subprograms",
+                    program.name,
+                    file.display()
+                ));
+            }
             let leans = called.map_or(true, |called| !called.is_empty());
             let written = matches!(limited, Limited::Written { .. });
             Ok((limited, leans || !written))

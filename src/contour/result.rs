@@ -94,6 +94,8 @@ pub struct PlotPoint {
     pub path: [[f64; 3]; 2],
     /// The load's place less that, mm.
     pub off: [[f64; 3]; 2],
+    /// Whether the path is that of a feed next to it, whose error counts.
+    pub counts: [bool; 2],
 }
 
 /// Takes results one by one.

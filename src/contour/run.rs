@@ -341,6 +341,7 @@ impl<'m, 's> Tracer<'m, 's> {
         let mut point = PlotPoint {
             path: [[0.0; 3]; 2],
             off: [[0.0; 3]; 2],
+            counts: [false; 2],
         };
         for which in 0..runs {
             let mut load = [0.0; SPACE];
@@ -440,6 +441,9 @@ impl<'m, 's> Tracer<'m, 's> {
                 *line = row.found.line;
             }
             all.take(near.distance2);
+            if let Some(slot) = point.counts.get_mut(which) {
+                *slot = true;
+            }
         }
     }
 

@@ -153,21 +153,34 @@ impl SpindleChart {
             });
             polyline(&mut text, "#999999", time, &value, points);
         }
-        let points = self.buckets.iter().flat_map(|bucket| {
-            let middle = 0.5 * (bucket.from_s + bucket.to_s);
-            [
-                (bucket.from_s, at(&bucket.first)),
-                (middle, at(&bucket.least)),
-                (middle, at(&bucket.most)),
-                (bucket.to_s, at(&bucket.last)),
-            ]
-        });
+        let points = self.buckets.iter().flat_map(|bucket| bucket.outline(at));
         polyline(&mut text, colour, time, &value, points);
         text
     }
 }
 
 impl Bucket {
+    /// The line through it: from the first value to the last, by way of the least and the
+    /// largest only where they lie beyond both. A value that just rises stays one line then.
+    fn outline(&self, at: impl Fn(&[f64; 5]) -> f64) -> impl Iterator<Item = (f64, f64)> {
+        let [first, least, most, last] = [&self.first, &self.least, &self.most, &self.last].map(at);
+        let middle = 0.5 * (self.from_s + self.to_s);
+        let below = (least < first.min(last)).then_some((middle, least));
+        let above = (most > first.max(last)).then_some((middle, most));
+        let [one, other] = if first <= last {
+            [below, above]
+        } else {
+            [above, below]
+        };
+        let ends = [
+            Some((self.from_s, first)),
+            one,
+            other,
+            Some((self.to_s, last)),
+        ];
+        ends.into_iter().flatten()
+    }
+
     /// Takes the next one in.
     fn join(&mut self, next: &Self) {
         self.to_s = next.to_s;
@@ -293,26 +306,45 @@ mod tests {
     use super::*;
     use crate::plan::period::Motion;
 
+    /// A speed that rises is one thin line, however many samples a bucket has.
+    #[test]
+    fn a_ramp_is_a_line() {
+        let mut chart = SpindleChart::default();
+        for index in 0..100_000_u32 {
+            chart.add(&sample(index, f64::from(index)));
+        }
+        let speed = |values: &[f64; 5]| values[0];
+        let outline = chart.buckets.iter().flat_map(|it| it.outline(speed));
+        let outline: Vec<(f64, f64)> = outline.collect();
+        assert_eq!(outline.len(), 2 * chart.buckets.len());
+        assert!(outline.is_sorted());
+    }
+
+    fn sample(index: u32, speed: f64) -> Sample {
+        Sample {
+            time_s: f64::from(index) * 1e-3,
+            target_rpm: 0.0,
+            motion: Motion { speed, accel: 0.0 },
+            jerk_rpm_s2: 0.0,
+            torque_nm: 0.0,
+            power_w: 0.0,
+        }
+    }
+
     /// However long the run, a single sample that stands out is still drawn.
     #[test]
     fn extremes_survive_in_bounded_memory() {
         let mut chart = SpindleChart::default();
         for index in 0..100_001_u32 {
-            chart.add(&Sample {
-                time_s: f64::from(index) * 1e-3,
-                target_rpm: 0.0,
-                motion: Motion {
-                    speed: if index == 77_777 { 123.0 } else { 1.0 },
-                    accel: 0.0,
-                },
-                jerk_rpm_s2: 0.0,
-                torque_nm: 0.0,
-                power_w: 0.0,
-            });
+            let speed = if index == 77_777 { 123.0 } else { 1.0 };
+            chart.add(&sample(index, speed));
         }
         assert!(chart.buckets.len() <= BUCKETS_MAX);
         let most = chart.buckets.iter().map(|bucket| bucket.most[0]);
         assert_eq!(most.fold(0.0, f64::max), 123.0);
+        let speed = |values: &[f64; 5]| values[0];
+        let drawn = chart.buckets.iter().flat_map(|it| it.outline(speed));
+        assert_eq!(drawn.map(|(_, it)| it).fold(0.0, f64::max), 123.0);
         let ends = chart.buckets.last().map(|bucket| bucket.to_s);
         assert_eq!(ends, Some(100.0));
         let gaps = chart

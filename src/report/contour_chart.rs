@@ -1,24 +1,21 @@
-//! Contour errors as pictures: the path with its errors enlarged, and circles.
-//!
-//! The drawings are polylines and hold no text of the user's.
+//! Contour errors as a picture: the path with its errors enlarged.
 
-use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use crate::contour::{ArcResult, BINS, PlotPoint};
+use super::drawing::{COLOURS, NAMES, PATH, begin, polyline, round_down};
+use crate::contour::PlotPoint;
 
 /// Points that can be distinguished; one more halves them.
 const POINTS_MAX: usize = 8192;
 const WIDTH: f64 = 900.0;
 const MARGIN: f64 = 40.0;
-/// The largest error is drawn as this share of the picture.
+/// An error is drawn as this share of the picture at most.
 const SHARE: f64 = 0.06;
-const PATH: &str = "#999999";
-const COLOURS: [&str; 2] = ["#b3541e", "#3a7d44"];
-const NAMES: [&str; 2] = ["without correction", "with correction"];
-/// Size of a circle's picture.
-const CELL: f64 = 300.0;
-const COLUMNS: usize = 3;
+/// So many times the root mean square of the errors is drawn in full: where few are much larger
+/// than all others, those others are seen.
+const SHOWN_RMS: f64 = 3.0;
+const RAPID: &str = "#dddddd";
+const WORST: &str = "#a4161a";
 const AXES: [char; 3] = ['X', 'Y', 'Z'];
 
 /// Collects points in bounded memory, and draws them.
@@ -28,6 +25,38 @@ pub struct ContourChart {
     /// Of so many samples one is kept: that with the largest error.
     step: u64,
     seen: u64,
+    errors: Seen,
+}
+
+/// Errors of all samples of feeds.
+#[derive(Debug, Default)]
+struct Seen {
+    largest_mm: f64,
+    /// The point with the largest, and whether it is corrected.
+    worst: Option<(PlotPoint, usize)>,
+    square_sum: f64,
+    count: u64,
+}
+
+impl Seen {
+    fn take(&mut self, point: &PlotPoint) {
+        for (which, (off, counts)) in point.off.iter().zip(point.counts).enumerate() {
+            let square = size2(off);
+            if !(counts && square.is_finite()) {
+                continue;
+            }
+            self.square_sum += square;
+            self.count += 1;
+            if square.sqrt() > self.largest_mm {
+                self.largest_mm = square.sqrt();
+                self.worst = Some((*point, which));
+            }
+        }
+    }
+
+    fn rms_mm(&self) -> f64 {
+        (self.square_sum / self.count.max(1) as f64).sqrt()
+    }
 }
 
 impl Default for ContourChart {
@@ -36,6 +65,7 @@ impl Default for ContourChart {
             points: Vec::new(),
             step: 1,
             seen: 0,
+            errors: Seen::default(),
         }
     }
 }
@@ -45,16 +75,14 @@ fn size2(off: &[f64; 3]) -> f64 {
 }
 
 fn worse(a: PlotPoint, b: PlotPoint) -> PlotPoint {
-    if size2(&b.off[0]) > size2(&a.off[0]) {
-        b
-    } else {
-        a
-    }
+    let rank = |point: &PlotPoint| (point.counts[0], size2(&point.off[0]));
+    if rank(&b) > rank(&a) { b } else { a }
 }
 
 impl ContourChart {
     /// Takes one more sample.
     pub fn add(&mut self, point: &PlotPoint) {
+        self.errors.take(point);
         let starts = self.seen.is_multiple_of(self.step);
         self.seen += 1;
         match self.points.last_mut() {
@@ -73,14 +101,76 @@ impl ContourChart {
         }
     }
 
-    /// Draws the two axes that reach farthest.
+    /// Draws the two axes that reach farthest: the path, and where feeds are off it.
     ///
     /// # Errors
     /// Those of `out`.
     pub fn write(&self, mut out: impl Write) -> io::Result<()> {
+        let view = View::of(&self.points, &self.errors);
+        begin(&mut out, WIDTH, view.height())?;
+        view.caption(&self.errors, &mut out)?;
+        for feeds in [false, true] {
+            let colour = if feeds { PATH } else { RAPID };
+            let pieces = self.points.chunk_by(|a, b| a.counts[0] == b.counts[0]);
+            let pieces = pieces.filter(|it| it.first().is_some_and(|it| it.counts[0] == feeds));
+            for piece in pieces {
+                let path = piece.iter().map(|point| view.on_path(point, 0));
+                polyline(&mut out, colour, path)?;
+            }
+        }
+        let mut x = MARGIN;
+        for (which, (colour, name)) in COLOURS.into_iter().zip(NAMES).enumerate() {
+            let finite = |point: &PlotPoint| size2(&point.off[which]).is_finite();
+            if !self.points.iter().any(finite) {
+                continue;
+            }
+            let y = CAPTION - 10.0;
+            writeln!(
+                out,
+                "<text x=\"{x}\" y=\"{y}\" fill=\"{colour}\">{name}</text>"
+            )?;
+            x += 180.0;
+            let pieces = self
+                .points
+                .chunk_by(|a, b| a.counts[which] == b.counts[which]);
+            for piece in pieces.filter(|it| it.first().is_some_and(|it| it.counts[which])) {
+                let off = piece.iter().map(|point| view.off_path(point, which));
+                polyline(&mut out, colour, off)?;
+            }
+        }
+        if let Some((point, which)) = &self.errors.worst {
+            let (x, y) = view.off_path(point, *which);
+            writeln!(
+                out,
+                "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"6\" fill=\"none\" stroke=\"{WORST}\"/>"
+            )?;
+        }
+        writeln!(out, "</svg>")
+    }
+}
+
+/// Height of what stands above a picture.
+const CAPTION: f64 = 70.0;
+
+/// Places of the picture: which axes are seen, and how large.
+struct View {
+    /// Axis to the right, and the one up.
+    axes: [usize; 2],
+    least: [f64; 2],
+    most: [f64; 2],
+    /// The larger reach, mm.
+    extent: f64,
+    /// Picture units by mm.
+    scale: f64,
+    /// How much larger errors are drawn than the path.
+    enlarge: f64,
+}
+
+impl View {
+    fn of(points: &[PlotPoint], errors: &Seen) -> Self {
         let mut least = [f64::INFINITY; 3];
         let mut most = [f64::NEG_INFINITY; 3];
-        for point in &self.points {
+        for point in points {
             for n in 0..3 {
                 least[n] = least[n].min(point.path[0][n]);
                 most[n] = most[n].max(point.path[0][n]);
@@ -90,175 +180,117 @@ impl ContourChart {
         let mut order = [0, 1, 2];
         // The smallest is looked along; of equals Z.
         order.sort_by(|a, b| reach(*b).total_cmp(&reach(*a)));
-        let mut shown = [order[0], order[1]];
-        shown.sort_unstable();
-        let [h, v] = shown;
-        let extent = reach(h).max(reach(v)).max(1e-6);
-        let largest = self
-            .points
-            .iter()
-            .flat_map(|point| point.off)
-            .map(|off| size2(&off))
-            .filter(|size| size.is_finite())
-            .fold(0.0, f64::max)
-            .sqrt();
-        let enlarge = round_down(SHARE * extent / largest.max(1e-9 * extent));
-        let scale = (WIDTH - 2.0 * MARGIN) / (extent * (1.0 + 2.0 * SHARE));
-        let place = |at: [f64; 2]| {
-            (
-                MARGIN + (at[0] - least[h] + SHARE * extent) * scale,
-                MARGIN + 30.0 + (most[v] - at[1] + SHARE * extent) * scale,
-            )
-        };
-        let height = 2.0 * MARGIN + 30.0 + (reach(v) + 2.0 * SHARE * extent) * scale;
-        begin(&mut out, WIDTH, height)?;
-        writeln!(
-            out,
-            "<text x=\"{MARGIN}\" y=\"20\">{} to the right, {} up; {:.4} mm wide; errors {enlarge} times as large, at most {:.2} µm</text>",
-            AXES[h],
-            AXES[v],
+        let mut axes = [order[0], order[1]];
+        axes.sort_unstable();
+        let extent = axes.map(reach).into_iter().fold(1e-6, f64::max);
+        let shown = errors.largest_mm.min(SHOWN_RMS * errors.rms_mm());
+        Self {
+            axes,
+            least: axes.map(|n| least[n]),
+            most: axes.map(|n| most[n]),
             extent,
-            largest * 1e3
-        )?;
-        let path = self
-            .points
-            .iter()
-            .map(|p| place([p.path[0][h], p.path[0][v]]));
-        polyline(&mut out, PATH, path)?;
-        let mut x = MARGIN;
-        for (which, (colour, name)) in COLOURS.into_iter().zip(NAMES).enumerate() {
-            let corrected = self.points.iter().any(|p| p.off[which][h].is_finite());
-            if !corrected {
-                continue;
-            }
-            writeln!(
-                out,
-                "<text x=\"{x}\" y=\"40\" fill=\"{colour}\">{name}</text>"
-            )?;
-            x += 180.0;
-            let points = self.points.iter().map(|p| {
-                place([
-                    p.path[which][h] + enlarge * p.off[which][h],
-                    p.path[which][v] + enlarge * p.off[which][v],
-                ])
-            });
-            polyline(&mut out, colour, points)?;
-        }
-        writeln!(out, "</svg>")
-    }
-}
-
-/// Circles with their errors enlarged, one picture each.
-///
-/// # Errors
-/// Those of `out`.
-pub fn circle_chart(arcs: &[ArcResult], mut out: impl Write) -> io::Result<()> {
-    let columns = arcs.len().clamp(1, COLUMNS);
-    let rows = arcs.len().div_ceil(columns).max(1);
-    begin(&mut out, CELL * columns as f64, (CELL + 40.0) * rows as f64)?;
-    if arcs.is_empty() {
-        writeln!(
-            out,
-            "<text x=\"10\" y=\"20\">no arc is long enough for the load to settle</text>"
-        )?;
-    }
-    for (index, arc) in arcs.iter().enumerate() {
-        let left = CELL * (index % columns) as f64;
-        let top = (CELL + 40.0) * (index / columns) as f64;
-        circle(arc, left, top, &mut out)?;
-    }
-    writeln!(out, "</svg>")
-}
-
-fn circle(arc: &ArcResult, left: f64, top: f64, out: &mut impl Write) -> io::Result<()> {
-    let (x, y) = (left + 0.5 * CELL, top + 40.0 + 0.5 * CELL);
-    let drawn = 0.38 * CELL;
-    let bins = arc.bins.each_ref().map(|bins| about_mean(bins));
-    let largest = bins
-        .iter()
-        .flatten()
-        .fold(0.0_f64, |most, (_, off)| most.max(off.abs()));
-    // In picture units by mm.
-    let per_mm = round_down(0.2 * drawn / largest.max(1e-7));
-    writeln!(
-        out,
-        "<text x=\"{}\" y=\"{}\">line {}: radius {:.4} mm, about its mean; one ring {:.3} µm</text>",
-        left + 10.0,
-        top + 18.0,
-        arc.line,
-        arc.radius_mm,
-        0.1 * drawn / per_mm * 1e3
-    )?;
-    for ring in -2..=1 {
-        let r = drawn * (1.0 + 0.1 * f64::from(ring));
-        let colour = if ring == 0 { PATH } else { "#dddddd" };
-        writeln!(
-            out,
-            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r:.2}\" fill=\"none\" stroke=\"{colour}\"/>"
-        )?;
-    }
-    for (colour, bins) in COLOURS.into_iter().zip(&bins) {
-        let points = bins.iter().map(|(bin, off)| {
-            let angle = std::f64::consts::TAU * (*bin as f64 + 0.5) / BINS as f64;
-            let (sin, cos) = libm::sincos(angle);
-            let r = drawn + off * per_mm;
-            (x + r * cos, y - r * sin)
-        });
-        polyline(out, colour, points)?;
-    }
-    Ok(())
-}
-
-/// Bins that were met, less their mean: the shrinkage is given in words.
-fn about_mean(bins: &[f32]) -> Vec<(usize, f64)> {
-    let met = || {
-        let all = bins.iter().enumerate();
-        all.filter(|(_, off)| off.is_finite())
-            .map(|(bin, off)| (bin, f64::from(*off)))
-    };
-    let mean = met().map(|(_, off)| off).sum::<f64>() / met().count().max(1) as f64;
-    met().map(|(bin, off)| (bin, off - mean)).collect()
-}
-
-fn begin(out: &mut impl Write, width: f64, height: f64) -> io::Result<()> {
-    writeln!(
-        out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height:.0}\" \
-         font-family=\"sans-serif\" font-size=\"12\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>"
-    )
-}
-
-fn polyline(
-    out: &mut impl Write,
-    colour: &str,
-    points: impl Iterator<Item = (f64, f64)>,
-) -> io::Result<()> {
-    let mut text = String::new();
-    let mut last = String::new();
-    for (x, y) in points {
-        let mut point = String::new();
-        let _ = write!(point, "{x:.2},{y:.2} ");
-        if point != last && x.is_finite() && y.is_finite() {
-            text.push_str(&point);
-            last = point;
+            scale: (WIDTH - 2.0 * MARGIN) / (extent * (1.0 + 2.0 * SHARE)),
+            enlarge: round_down(SHARE * extent / shown.max(1e-9 * extent)),
         }
     }
-    writeln!(
-        out,
-        "<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.2\" points=\"{}\"/>",
-        text.trim_end()
-    )
+
+    fn reach(&self) -> [f64; 2] {
+        [0, 1].map(|n| (self.most[n] - self.least[n]).max(0.0))
+    }
+
+    fn height(&self) -> f64 {
+        CAPTION + MARGIN + (self.reach()[1] + 2.0 * SHARE * self.extent) * self.scale
+    }
+
+    /// The largest error that is drawn in full, mm.
+    fn limit_mm(&self) -> f64 {
+        SHARE * self.extent / self.enlarge
+    }
+
+    fn caption(&self, errors: &Seen, out: &mut impl Write) -> io::Result<()> {
+        let digits = super::figure::round_to_digits;
+        let [across, up] = self.axes.map(|n| AXES[n]);
+        let [wide, high] = self.reach().map(|it| digits(it, 6));
+        let enlarge = self.enlarge;
+        let largest = errors.largest_mm * 1e3;
+        let limit = self.limit_mm() * 1e3;
+        writeln!(
+            out,
+            "<text x=\"{MARGIN}\" y=\"20\">{across} to the right, {up} up; {wide} × {high} mm</text>"
+        )?;
+        let cut = if largest > limit {
+            format!("; those beyond {} µm are cut there", digits(limit, 3))
+        } else {
+            String::new()
+        };
+        writeln!(
+            out,
+            "<text x=\"{MARGIN}\" y=\"40\">errors of feeds {enlarge} times as large, at most {largest:.2} µm (ring){cut}</text>"
+        )
+    }
+
+    fn place(&self, at: [f64; 2]) -> (f64, f64) {
+        (
+            MARGIN + (at[0] - self.least[0] + SHARE * self.extent) * self.scale,
+            CAPTION + (self.most[1] - at[1] + SHARE * self.extent) * self.scale,
+        )
+    }
+
+    /// Where the programmed path is.
+    fn on_path(&self, point: &PlotPoint, which: usize) -> (f64, f64) {
+        self.place(self.axes.map(|n| point.path[which][n]))
+    }
+
+    /// Where the load is, its error enlarged.
+    fn off_path(&self, point: &PlotPoint, which: usize) -> (f64, f64) {
+        let size = size2(&point.off[which]).sqrt();
+        let times = if size > self.limit_mm() {
+            self.enlarge * self.limit_mm() / size
+        } else {
+            self.enlarge
+        };
+        let at = |n: usize| point.path[which][n] + times * point.off[which][n];
+        self.place(self.axes.map(at))
+    }
 }
 
-/// The next lower 1, 2 or 5 times a power of ten.
-fn round_down(value: f64) -> f64 {
-    if !(value > 0.0 && value.is_finite()) {
-        return 1.0;
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(x: f64, off: f64, feed: bool) -> PlotPoint {
+        PlotPoint {
+            path: [[x, 0.0, 0.0]; 2],
+            off: [[0.0, off, 0.0], [f64::NAN; 3]],
+            counts: [feed, false],
+        }
     }
-    let power = libm::pow(10.0, libm::floor(libm::log10(value)));
-    let digit = [5.0, 2.0, 1.0]
-        .into_iter()
-        .find(|digit| digit * power <= value);
-    super::figure::round_to_digits(digit.unwrap_or(1.0) * power, 6)
+
+    fn drawn(chart: &ContourChart) -> String {
+        let mut text = Vec::new();
+        chart.write(&mut text).unwrap();
+        String::from_utf8(text).unwrap()
+    }
+
+    /// 100 mm of feed 1 µm off, one sample 100 µm off, and a rapid 1 mm off, which does not
+    /// count: 0.06·100 mm for three times the root mean square of 3.3 µm is 606, so 500 times,
+    /// up to 0.06·100 mm/500 = 12 µm.
+    #[test]
+    fn one_large_error_does_not_hide_the_others_and_rapids_do_not_count() {
+        let mut chart = ContourChart::default();
+        for index in 0..1000_u32 {
+            let off = if index == 700 { 0.1 } else { 0.001 };
+            chart.add(&point(f64::from(index) * 0.1, off, true));
+        }
+        chart.add(&point(99.9, 1.0, false));
+        chart.add(&point(100.0, 1.0, false));
+        let text = drawn(&chart);
+        let caption = "errors of feeds 500 times as large, at most 100.00 µm (ring); those beyond \
+                       12 µm are cut there";
+        assert!(text.contains(caption), "{text:.600}");
+        assert!(text.contains("X to the right, Y up; 100 × 0 mm"));
+        // The feed, the rapid, and the load along the feed alone.
+        assert_eq!(text.matches("<polyline").count(), 3);
+        assert!(!text.contains("with correction<"), "{text:.900}");
+    }
 }

@@ -4,10 +4,12 @@ mod aligned;
 mod baseline;
 mod chart;
 mod checked;
+mod circle_chart;
 mod comparison;
 mod contour_chart;
 mod contoured;
 mod csv;
+mod drawing;
 mod drives;
 mod figure;
 mod finding;
@@ -43,8 +45,9 @@ mod verified;
 pub use baseline::{Baseline, BaselineError};
 pub use chart::SpindleChart;
 pub use checked::{Changes, Checked, Totals, Verdict, chain};
+pub use circle_chart::circle_chart;
 pub use comparison::{Change, Comparison, comparison_csv, comparison_text};
-pub use contour_chart::{ContourChart, circle_chart};
+pub use contour_chart::ContourChart;
 pub use contoured::{
     ArcList, CONTOUR_COLUMNS, contour_csv_row, contour_json, contour_json_row, contour_text,
 };

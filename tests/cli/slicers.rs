@@ -28,7 +28,7 @@ fn lines() -> Vec<String> {
     lines.collect()
 }
 
-/// Runs a line as PrusaSlicer and its relatives do: through the user's shell, with the file
+/// Runs a line as `PrusaSlicer` and its relatives do: through the user's shell, with the file
 /// last, in quotes, and what they say in the environment.
 fn slice(shop: &Shop, line: &str) -> Ran {
     let file = shop.path().join(".4711.gcode.pp");

@@ -144,6 +144,43 @@ fn what_cannot_be_watched_is_refused() {
     watch("in", "out", &[]).refused("in/b has settings of its own (gwatt.toml)");
 }
 
+/// A program that calls another one says so in its certificate.
+#[test]
+fn what_is_called_is_named() {
+    let shop = shop();
+    shop.put("in/main.nc", "G21 G90 G94\nM98 P77\nM30\n");
+    shop.put("in/0077.nc", "O77\nG1 X10 F100\nM99\n");
+    let fanuc = Path::new(env!("CARGO_MANIFEST_DIR")).join("machine-configs/three-axis.toml");
+    let text = fs::read_to_string(fanuc).unwrap();
+    shop.put(
+        "mill.toml",
+        text.replace("controller = \"iso\"", "controller = \"fanuc\""),
+    );
+    let run = [
+        "watch",
+        "in",
+        "out",
+        "-m",
+        "mill.toml",
+        "--now",
+        "--settle=0",
+        "-q",
+    ];
+    let ran = shop.run(&run);
+    let refused = shop.path().join("out/main.nc.refused.txt");
+    assert!(
+        !refused.exists(),
+        "{}",
+        fs::read_to_string(refused).unwrap()
+    );
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let said = shop.get("out/main.nc.certificate.txt");
+    assert!(
+        said.contains("in/main.nc: it is certified with in/0077.nc as"),
+        "{said}"
+    );
+}
+
 /// The settings of the folder count, and those of its subfolders are the same.
 #[test]
 fn settings_of_the_folder_count() {

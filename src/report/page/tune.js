@@ -132,7 +132,7 @@ function marks(least, most) {
 }
 // One plot: curves are {kind, points: [[hz, value], …]}.
 function plot(title, curves, range, height) {
-  const [width, left, right, top, bottom] = [760, 60, 18, 22, 24];
+  const [width, left, right, top, bottom] = [760, 60, 18, 22, 38];
   const values = curves.flatMap((c) => c.points.map((p) => p[1])).filter(Number.isFinite);
   let least = Math.min(...values), most = Math.max(...values);
   if (!(most - least > 1e-3)) [least, most] = [least - 1 || -1, least + 1 || 1];
@@ -152,9 +152,10 @@ function plot(title, curves, range, height) {
       const hz = digit * 10 ** decade;
       if (hz < range[0] || hz > range[1]) continue;
       svg.append(el("path", { class: "grid", d: `M${x(hz)} ${top}V${height - bottom}` }));
-      if ([1, 2, 5].includes(digit)) svg.append(el("text", { x: x(hz), y: height - 8, "text-anchor": "middle" }, String(Number(hz.toPrecision(3)))));
+      if ([1, 2, 5].includes(digit)) svg.append(el("text", { x: x(hz), y: height - 22, "text-anchor": "middle" }, String(Number(hz.toPrecision(3)))));
     }
   }
+  svg.append(el("text", { x: (left + width - right) / 2, y: height - 6, "text-anchor": "middle" }, "frequency, Hz"));
   for (const curve of curves) {
     let d = "", drawing = false, last = 0;
     for (const [hz, value] of curve.points) {
@@ -204,6 +205,8 @@ function drawRest() {
   document.getElementById("filters").replaceChildren(head, ...rows);
   const range = [data.band_hz / 100, data.band_hz];
   const plots = [];
+  // Of the two axes that differ most without filters, what they come to with them.
+  let worst = null;
   for (let i = 0; i < data.axes.length; i++) {
     for (let j = i + 1; j < data.axes.length; j++) {
       const [a, b] = [data.axes[i], data.axes[j]];
@@ -211,6 +214,9 @@ function drawRest() {
       const after = (hz) => mul(before(hz), div(response(filters[i], hz, period), response(filters[j], hz, period)));
       const largest = (ratio, part) => Math.max(...sample(range, 500, (hz) => Math.abs(part(ratio(hz)))).map((p) => p[1]));
       const gain = (c) => db(abs(c));
+      if (!worst || largest(before, gain) > worst.apart) {
+        worst = { apart: largest(before, gain), said: `${a.letter} and ${b.letter} answer ${largest(before, gain).toFixed(2)} dB apart up to ${data.band_hz} Hz, with the filters ${largest(after, gain).toFixed(2)} dB` };
+      }
       const say = (ratio) => `${largest(ratio, gain).toFixed(3)} dB and ${largest(ratio, deg).toFixed(2)}°`;
       plots.push(el("p", {}, `${a.letter} by ${b.letter}, up to ${data.band_hz} Hz: ${say(before)} apart; with the filters ${say(after)} (grey: without, green: with).`));
       for (const [title, part] of [[`${a.letter}/${b.letter}: gain, dB`, gain], ["phase, degrees", deg]]) {
@@ -221,6 +227,7 @@ function drawRest() {
       }
     }
   }
+  document.getElementById("headline").textContent = worst ? worst.said : `How ${data.axes.map((axis) => axis.letter).join(", ")} answers`;
   document.getElementById("match").replaceChildren(...plots);
 }
 
