@@ -217,7 +217,7 @@ pub fn called_files<R: Read + Seek>(
     let mut found = BTreeSet::new();
     for way in &ways {
         input.rewind().map_err(Failure::Input)?;
-        let mut front = Front::new(&mut input, machine, way);
+        let mut front = Executor::new(&mut input, machine, way);
         while front.next_line()?.is_some() {}
         found.extend(front.paths().iter().cloned());
         front.finish()?;
