@@ -12,7 +12,7 @@ use walkdir::WalkDir;
 use super::listing::is_program;
 use super::settings;
 
-/// What changes with a file, whoever writes it and however.
+/// What changes with a file, however it is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stamp {
     bytes: u64,

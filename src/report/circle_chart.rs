@@ -64,7 +64,7 @@ fn circle(arc: &ArcResult, left: f64, top: f64, out: &mut impl Write) -> io::Res
     );
     let lines = [
         format!("line {}, radius {radius} mm", arc.line),
-        format!("about its mean; from ring to ring {ring} µm"),
+        format!("about its mean; rings {ring} µm apart"),
     ];
     for (line, y) in lines.iter().zip([18.0, 34.0]) {
         writeln!(
