@@ -2,8 +2,8 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::thread::sleep;
-use std::time::Duration;
+#[cfg(unix)]
+use std::{thread::sleep, time::Duration};
 
 use super::{GENTLE, Ran, STEEP, Shop};
 
