@@ -18,7 +18,7 @@ to position_mm (position_deg), with speed_mm_min (speed_deg_min) as its largest
 speed, or holds speed_mm_min; the spindle holds speed_rpm. Limits of a row hold until
 the drive's next one: accel_mm_s2, jerk_mm_s3 (accel_deg_s2, jerk_deg_s3; accel_rpm_s,
 jerk_rpm_s2) and power_w. In rows for all, power_w is what they share from then on,
-in the place of what the machine's converter delivers, and period_ms the period.
+in place of what the machine's converter delivers, and period_ms the period.
 
 All drives start at rest, axes at 0. The run ends when all is carried out. Every row of
 the result is the end of a period; jerk is its mean over the period.

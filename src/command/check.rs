@@ -75,7 +75,7 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
             if let Some(note) = note {
                 terminal.note(format_args!("{}: {note}", checked.program));
             }
-            tell(&checked, terminal);
+            show(&checked, terminal);
         }
         match args.format {
             Format::Text if shown => {
@@ -141,7 +141,7 @@ fn progress(
 }
 
 /// Warnings and refusals, with the lines under them.
-fn tell(checked: &Checked, terminal: Terminal) {
+fn show(checked: &Checked, terminal: Terminal) {
     match &checked.outcome {
         Ok(summary) => terminal.diagnostics(&checked.program, &summary.notes),
         Err(failure) => terminal.failure(&checked.program, failure),

@@ -106,7 +106,7 @@ impl Collected {
         if let Some(csv) = &mut csv {
             writeln!(csv, "{CONTOUR_COLUMNS}").context("cannot write the table")?;
         }
-        // Rows wait beside, because the head of the file is known last.
+        // Rows wait in a file, because the head of the file is known last.
         let json_rows = match args.json.as_deref() {
             Some(path) => Some((spool(path)?, Target::Stdout.spool()?)),
             None => None,

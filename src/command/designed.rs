@@ -16,7 +16,7 @@ use super::clash::refuse_clashes;
 use super::input::is_dash;
 use super::into::axis_of;
 use super::setup::load_machine;
-use super::signal::{Units, bounds, deliver, tell, turns};
+use super::signal::{Units, bounds, deliver, show, turns};
 use super::terminal::Terminal;
 use crate::cli::{ExciteArgs, ValueName};
 
@@ -78,7 +78,7 @@ pub fn run(args: &ExciteArgs, terminal: Terminal) -> Result<Verdict> {
     };
     let proposal = propose(known, &bounds)?;
     deliver(args.output.as_deref(), name, &proposal.excitation)?;
-    tell(&proposal.excitation, terminal);
+    show(&proposal.excitation, terminal);
     terminal.note(described(known, &proposal, units));
     if let Some(remark) = steady(&proposal, units) {
         terminal.note(remark);

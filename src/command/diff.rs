@@ -63,7 +63,7 @@ pub fn run(args: &DiffArgs, terminal: Terminal) -> Result<Verdict> {
         |program| compare(program, &from, &to),
         |comparison| {
             if let Some(program) = in_turn.next() {
-                tell(program, &comparison, [&from, &to], terminal);
+                show(program, &comparison, [&from, &to], terminal);
             }
             comparisons.push(comparison);
             Ok(())
@@ -81,7 +81,7 @@ pub fn run(args: &DiffArgs, terminal: Terminal) -> Result<Verdict> {
     Ok(worst.unwrap_or(Verdict::Fits))
 }
 
-fn tell(program: &Program, comparison: &Comparison, setups: [&Setup; 2], terminal: Terminal) {
+fn show(program: &Program, comparison: &Comparison, setups: [&Setup; 2], terminal: Terminal) {
     let [from, to] = setups;
     match (&comparison.from, &comparison.to) {
         (Err(failure), _) => terminal.say(|it| dialect::failure(from, program, failure, it)),

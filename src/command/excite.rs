@@ -5,7 +5,7 @@ use gwatt::identify::excitation::{Excitation, Shape, make, order_for, reach};
 use gwatt::report::Verdict;
 
 use super::designed;
-use super::signal::{bounds, deliver, tell, turns};
+use super::signal::{bounds, deliver, show, turns};
 use super::terminal::Terminal;
 use crate::cli::{ExciteArgs, ShapeArg, ValueName};
 
@@ -28,7 +28,7 @@ pub fn run(args: &ExciteArgs, terminal: Terminal) -> Result<Verdict> {
     let signal = make(shape(args)?, amplitude, args.rate_hz.recip())?;
     let warnings = warnings(args, name, &signal)?;
     deliver(args.output.as_deref(), name, &signal)?;
-    tell(&signal, terminal);
+    show(&signal, terminal);
     for warning in warnings {
         terminal.text(&format!("gwatt: warning: {warning}\n"));
     }

@@ -184,7 +184,7 @@ pub fn limit_one(
             }
         }
     }
-    tell(&program.name, &summary, partly, setup, messages);
+    show(&program.name, &summary, partly, setup, messages);
     rows.deliver(|blocks, out| {
         limit_json(&program.name, &setup.machine.name, &summary, blocks, out)
     })?;
@@ -237,7 +237,7 @@ fn target(args: &LimitArgs, program: &Program, places: &Places) -> Result<Target
     }
 }
 
-fn tell(
+fn show(
     program: &str,
     summary: &LimitSummary,
     partly: bool,

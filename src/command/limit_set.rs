@@ -60,7 +60,7 @@ pub fn run(args: &LimitArgs, listing: &Listing, terminal: Terminal) -> Result<Ve
     let slower = limited.programs.iter().any(|summary| summary.slower);
     let partly = args.partial && !certified && limited.slower() && slower;
     for (program, summary) in programs.iter().zip(&limited.programs) {
-        tell(&program.name, summary, partly, &setup, terminal);
+        show(&program.name, summary, partly, &setup, terminal);
     }
     terminal.text(&set_text(&limited, certified || partly));
     let mut together = Together::default();
@@ -154,7 +154,7 @@ fn refuse_all_clashes(args: &LimitArgs, files: &[SetFile], placed: &[PathBuf]) -
     Ok(())
 }
 
-fn tell(program: &str, summary: &LimitSummary, partly: bool, setup: &Setup, terminal: Terminal) {
+fn show(program: &str, summary: &LimitSummary, partly: bool, setup: &Setup, terminal: Terminal) {
     terminal.diagnostics(program, &summary.before.notes);
     terminal.diagnostics(program, &summary.reasons);
     terminal.text(&if partly && !summary.certified {

@@ -20,7 +20,6 @@ pub mod verify;
 pub mod watch;
 
 mod baselines;
-mod beside;
 mod clash;
 mod designed;
 mod filter_force;
@@ -50,6 +49,7 @@ mod signal;
 mod terminal;
 mod together;
 mod watched;
+mod whole_file;
 
 pub use output::print;
 pub use terminal::{Shown, Terminal};

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use gwatt::pipeline::Restart;
 
-use super::beside::Beside;
 use super::input::is_dash;
 use super::progress::around;
+use super::whole_file::WholeFile;
 
 /// Where a result is to go.
 #[derive(Debug, Clone)]
@@ -71,9 +71,9 @@ impl Target {
                 Body::Apart(file)
             }
             Self::File { path, permissions } => {
-                let file = Beside::new(path, permissions.clone())
+                let file = WholeFile::new(path, permissions.clone())
                     .with_context(|| format!("cannot write {}", path.display()))?;
-                Body::Beside(file)
+                Body::Whole(file)
             }
         };
         Ok(Spool { target: self, body })
@@ -90,14 +90,14 @@ pub struct Spool {
 #[derive(Debug)]
 enum Body {
     Apart(File),
-    Beside(Beside),
+    Whole(WholeFile),
 }
 
 impl Body {
     fn file(&self) -> &File {
         match self {
             Self::Apart(file) => file,
-            Self::Beside(beside) => beside.file(),
+            Self::Whole(file) => file.file(),
         }
     }
 }
@@ -121,7 +121,7 @@ impl Spool {
     /// Puts the result where it is to go.
     pub fn deliver(self) -> anyhow::Result<()> {
         match (self.target, self.body) {
-            (Target::File { path, .. }, Body::Beside(file)) => file
+            (Target::File { path, .. }, Body::Whole(file)) => file
                 .persist(&path)
                 .with_context(|| format!("cannot write {}", path.display())),
             (Target::Special(path), Body::Apart(file)) => {

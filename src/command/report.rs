@@ -141,7 +141,7 @@ fn report_one(
     };
     let series = match series::write(args, program, setup, messages) {
         Ok(series) => series,
-        Err(Refused::Told) => return Ok(Some(Verdict::Refused)),
+        Err(Refused::Reported) => return Ok(Some(Verdict::Refused)),
         Err(Refused::Error(error)) => return Err(error),
     };
     if let Some(drawn) = rows.page.take() {

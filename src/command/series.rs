@@ -78,14 +78,14 @@ pub fn write(
 
 fn refused(name: &str, failure: &Failure, messages: &mut Messages) -> Refused {
     messages.failure(name, failure);
-    Refused::Told
+    Refused::Reported
 }
 
 /// Why there is no series.
 #[derive(Debug)]
 pub enum Refused {
-    /// A program is refused, and that has been told.
-    Told,
+    /// A program is refused, and that has been reported.
+    Reported,
     /// Anything else.
     Error(anyhow::Error),
 }

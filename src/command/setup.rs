@@ -142,7 +142,7 @@ pub fn machine_name(args: &MachineArgs, terminal: Terminal) -> &str {
     })
 }
 
-/// Loads a machine and tells what is to be told of it.
+/// Loads a machine and shows what was found in its file.
 pub fn load_machine(name: &str, terminal: Terminal) -> Result<Machine> {
     match Machine::load(name) {
         Ok((machine, notes)) => {

@@ -64,7 +64,7 @@ pub fn bounds(args: &ExciteArgs, rotary: bool) -> Result<(Option<f64>, Option<f6
 }
 
 /// Says what a signal covers.
-pub fn tell(signal: &Excitation, terminal: Terminal) {
+pub fn show(signal: &Excitation, terminal: Terminal) {
     terminal.note(format_args!(
         "{} samples, {:.3} s; {:.3} to {:.1} Hz, resolution {:.3} Hz; peak {}, rms {:.4}",
         signal.values.len(),

@@ -19,7 +19,7 @@ pub struct Terminal {
     progress: Shape,
 }
 
-/// An error that has been told already.
+/// An error that has been reported already.
 #[derive(Debug, thiserror::Error)]
 #[error("refused")]
 pub struct Shown;

@@ -22,7 +22,7 @@ const RANDOM: usize = 6;
 
 /// A temporary file next to its place.
 #[derive(Debug)]
-pub enum Beside {
+pub enum WholeFile {
     /// Without a name.
     #[cfg(target_os = "linux")]
     Unnamed(File),
@@ -30,7 +30,7 @@ pub enum Beside {
     Named(Named),
 }
 
-impl Beside {
+impl WholeFile {
     /// A file next to `path`, with the permissions of the file that it replaces or
     /// those of any new file.
     ///
@@ -39,11 +39,11 @@ impl Beside {
     pub fn new(path: &Path, permissions: Option<Permissions>) -> io::Result<Self> {
         let (folder, prefix) = (folder(path), prefix(path));
         clear(folder, &prefix);
-        let beside = Self::make(folder, &prefix, permissions.is_some())?;
+        let file = Self::make(folder, &prefix, permissions.is_some())?;
         if let Some(permissions) = permissions {
-            beside.file().set_permissions(permissions)?;
+            file.file().set_permissions(permissions)?;
         }
-        Ok(beside)
+        Ok(file)
     }
 
     #[cfg(target_os = "linux")]
@@ -252,16 +252,16 @@ mod tests {
     fn a_file_appears_whole_in_place_of_the_old_one() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out.ngc");
-        let kinds: [fn(&Path, &str) -> io::Result<Beside>; 2] = [
-            |folder, prefix| Beside::make(folder, prefix, false),
-            |folder, prefix| Ok(Beside::Named(Named::new(folder, prefix, false)?)),
+        let kinds: [fn(&Path, &str) -> io::Result<WholeFile>; 2] = [
+            |folder, prefix| WholeFile::make(folder, prefix, false),
+            |folder, prefix| Ok(WholeFile::Named(Named::new(folder, prefix, false)?)),
         ];
         for (number, make) in kinds.into_iter().enumerate() {
             let old = fs::read_to_string(&path).ok();
-            let beside = make(folder.path(), &prefix(&path)).unwrap();
-            writeln!(beside.file(), "G0 X{number}").unwrap();
+            let file = make(folder.path(), &prefix(&path)).unwrap();
+            writeln!(file.file(), "G0 X{number}").unwrap();
             assert_eq!(fs::read_to_string(&path).ok(), old);
-            beside.persist(&path).unwrap();
+            file.persist(&path).unwrap();
             let new = fs::read_to_string(&path).unwrap();
             assert_eq!(new, format!("G0 X{number}\n"));
             assert_eq!(names(folder.path()), ["out.ngc"]);
@@ -303,12 +303,12 @@ mod tests {
             fs::write(folder.path().join(name), "M30\n").unwrap();
         }
         let running = Named::new(folder.path(), &prefix, false).unwrap();
-        let beside = Beside::new(&path, None).unwrap();
+        let file = WholeFile::new(&path, None).unwrap();
         assert!(running.file.path().exists());
         let left = names(folder.path());
         assert!(!left.contains(&stale), "{left:?}");
         assert!(others.iter().all(|name| left.contains(name)), "{left:?}");
-        beside.persist(&path).unwrap();
+        file.persist(&path).unwrap();
         drop(running);
         assert_eq!(names(folder.path()).len(), others.len() + 1);
     }
@@ -338,7 +338,7 @@ mod tests {
         let signals = [("INT", 2), ("TERM", 15)].into_iter();
         for (name, number) in signals.filter(|(_, number)| ignored >> (number - 1) & 1 == 0) {
             let folder = tempfile::tempdir().unwrap();
-            let test = "command::beside::tests::holds_a_named_file";
+            let test = "command::whole_file::tests::holds_a_named_file";
             let mut child = Command::new(std::env::current_exe().unwrap())
                 .args(["--ignored", "--exact", test])
                 .env("GWATT_TEST_FOLDER", folder.path())
