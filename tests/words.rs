@@ -63,8 +63,18 @@ fn files(place: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The lines of a text with words that are avoided; the list itself may have them.
-fn found_in(text: &str, words: &[(String, String)]) -> Vec<String> {
+/// A line without what is quoted as code.
+fn without_code(line: &str) -> String {
+    let parts = line.split('`').enumerate();
+    parts
+        .filter(|(index, _)| index % 2 == 0)
+        .map(|(_, part)| part)
+        .collect()
+}
+
+/// The lines of a text with words that are avoided; the list itself and names that pages quote may
+/// have them.
+fn found_in(text: &str, is_page: bool, words: &[(String, String)]) -> Vec<String> {
     let mut in_list = false;
     let mut found = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
