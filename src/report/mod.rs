@@ -9,6 +9,8 @@ mod contour_chart;
 mod contoured;
 mod csv;
 mod drives;
+mod effects;
+mod estimate;
 mod figure;
 mod finding;
 mod github;

@@ -2,9 +2,11 @@
 
 use std::fmt;
 
+use super::effects::{Effect, Saturation};
+use super::figure::Figure;
 use super::flexible::{Flexible, Root};
 use super::power_fit::PowerModel;
-use super::rigid::{Figure, Rigid};
+use super::rigid::Rigid;
 
 /// A plain word.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +27,14 @@ pub enum Judgement {
     Reversed,
     /// A damping or a viscous friction comes out clearly negative.
     NegativeDamping,
+    /// A force that is periodic in position is a fair part of the whole.
+    Cogging,
+    /// Force is missing after each reversal.
+    Backlash,
+    /// Friction falls with the speed, by a fair part of the force.
+    Stribeck,
+    /// The force that moves the axis ends at a value, and the recorded one is another.
+    Saturated,
     /// What is left is more than noise, and too much of the whole.
     MoreThanNoise,
     /// The method gives no standard errors.
@@ -44,6 +54,10 @@ impl Judgement {
             Self::NotRigid => "not rigid",
             Self::Reversed => "reversed",
             Self::NegativeDamping => "negative damping",
+            Self::Cogging => "cogging",
+            Self::Backlash => "backlash",
+            Self::Stribeck => "Stribeck friction",
+            Self::Saturated => "saturated",
             Self::MoreThanNoise => "more than noise is left",
             Self::NoErrors => "no standard errors",
             Self::DoesNotFit => "the model does not fit",
@@ -66,6 +80,18 @@ impl fmt::Display for Judgement {
             ),
             Self::NegativeDamping => f.write_str(
                 "negative damping: no axis has it; the model stands for something else, such as friction, backlash or another mode",
+            ),
+            Self::Cogging => f.write_str(
+                "cogging: a force that is periodic in position; mass and friction are estimated next to it, but a machine file has no place for it: a margin must cover its amplitude times the speed",
+            ),
+            Self::Backlash => f.write_str(
+                "backlash: force is missing after each reversal, as in a play; take up the play (preload, nut, belt), and record again",
+            ),
+            Self::Stribeck => f.write_str(
+                "Stribeck friction: it falls as the axis begins to move; mass and friction are estimated next to it, but a machine file has Coulomb friction alone: where the axis creeps, it is that of breakaway",
+            ),
+            Self::Saturated => f.write_str(
+                "saturated: the force ends at a value, and the motion does not go with what was recorded; record with a smaller amplitude, or the force that the drive gives",
             ),
             Self::MoreThanNoise => f.write_str(
                 "more than noise is left: the model misses something, such as friction, cogging, backlash or another mode",
@@ -138,6 +164,11 @@ pub fn rigid(axis: &Rigid) -> Judgement {
     if is_negative(axis.mass) && axis.rel_error <= REL_ERROR {
         return Judgement::Reversed;
     }
+    if axis.mass.value > 0.0
+        && let Some(word) = named(axis)
+    {
+        return word;
+    }
     if axis.mass.value <= 0.0 || axis.rel_error > REL_ERROR {
         return Judgement::DoesNotFit;
     }
@@ -156,6 +187,21 @@ pub fn rigid(axis: &Rigid) -> Judgement {
         }
     }
     longer(times)
+}
+
+/// What makes up a fair part of the force besides mass and friction, where that is known by
+/// its sign.
+fn named(axis: &Rigid) -> Option<Judgement> {
+    if let Some(Saturation::Recording { .. } | Saturation::Beyond { .. }) = axis.saturation {
+        return Some(Judgement::Saturated);
+    }
+    let effects = axis.effects.iter().filter(|effect| effect.share() > MISSED);
+    let most = effects.max_by(|a, b| a.share().total_cmp(&b.share()))?;
+    Some(match most {
+        Effect::Cogging { .. } => Judgement::Cogging,
+        Effect::Backlash { .. } => Judgement::Backlash,
+        Effect::Stribeck { .. } => Judgement::Stribeck,
+    })
 }
 
 /// Judges a flexible axis.
