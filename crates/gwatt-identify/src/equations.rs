@@ -6,6 +6,7 @@
 
 use std::sync::Arc;
 
+use super::agreement::agree;
 use super::column::{Kind, Quantity};
 use super::filter::{derivative, low_pass, second_derivative};
 use super::quality::{self, CutOff};
@@ -99,6 +100,7 @@ pub(super) fn force_of(recording: &Recording) -> Outcome<Vec<f64>> {
 fn raw(recording: &Recording, bandwidth_hz: f64) -> Outcome<Raw> {
     let t = recording.period_s;
     let force = force_of(recording)?;
+    agree(recording)?;
     for signal in &recording.signals {
         if matches!(
             signal.quantity,

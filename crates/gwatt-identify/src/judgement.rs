@@ -126,6 +126,10 @@ const REL_ERROR: f64 = 0.5;
 const REL_ERROR_FLEXIBLE: f64 = 0.9;
 /// What may be left besides noise, as a share of the whole.
 const MISSED: f64 = 0.1;
+/// The same where most of what is left follows from the input: a mode that is missing takes
+/// the inertia along.
+const MOSTLY: f64 = 0.5;
+const MOSTLY_MISSED: f64 = 0.04;
 /// So many times as much as noise would leave is more than noise: noise of a sensor is
 /// as strong above the band as within, or stronger.
 const NOISY: f64 = 2.0;
@@ -158,9 +162,6 @@ fn is_negative(figure: Figure) -> bool {
 /// Judges a rigid axis. Friction counts against the larger of its parts.
 #[must_use]
 pub fn rigid(axis: &Rigid) -> Judgement {
-    if axis.mass.value > 0.0 && axis.resonates {
-        return Judgement::NotRigid;
-    }
     if is_negative(axis.mass) && axis.rel_error <= REL_ERROR {
         return Judgement::Reversed;
     }
@@ -168,6 +169,9 @@ pub fn rigid(axis: &Rigid) -> Judgement {
         && let Some(word) = named(axis)
     {
         return word;
+    }
+    if axis.mass.value > 0.0 && axis.resonates {
+        return Judgement::NotRigid;
     }
     if axis.mass.value <= 0.0 || axis.rel_error > REL_ERROR {
         return Judgement::DoesNotFit;
@@ -195,7 +199,9 @@ fn named(axis: &Rigid) -> Option<Judgement> {
     if let Some(Saturation::Recording { .. } | Saturation::Beyond { .. }) = axis.saturation {
         return Some(Judgement::Saturated);
     }
-    let effects = axis.effects.iter().filter(|effect| effect.share() > MISSED);
+    // What explains less than it leaves is not what the axis has for the most part.
+    let is_much = |share: f64| share > MISSED && (share > axis.rel_error || !axis.resonates);
+    let effects = axis.effects.iter().filter(|effect| is_much(effect.share()));
     let most = effects.max_by(|a, b| a.share().total_cmp(&b.share()))?;
     Some(match most {
         Effect::Cogging { .. } => Judgement::Cogging,
@@ -250,7 +256,8 @@ fn leaves_more_than_noise(axis: &Flexible) -> bool {
     let missed = axis.rel_error * axis.missed_share.sqrt();
     let is_coloured = !axis.whiteness.is_white() && axis.rel_error > MISSED;
     let is_unsteady = !axis.steadiness.is_white() && axis.rel_error > UNSTEADY;
-    missed > MISSED || is_coloured || is_unsteady
+    let is_mostly_missed = axis.missed_share > MOSTLY && missed > MOSTLY_MISSED;
+    missed > MISSED || is_mostly_missed || is_coloured || is_unsteady
 }
 
 /// Judges a power model.

@@ -22,7 +22,7 @@ pub mod response_table;
 pub mod rigid;
 pub mod tune;
 
-mod parts;
+mod agreement;
 mod any_delay;
 mod arx;
 mod charge;
@@ -55,6 +55,7 @@ mod normal;
 mod output_error;
 mod parallel;
 mod parameters;
+mod parts;
 mod peak_factor;
 mod places;
 mod polynomial;

@@ -150,7 +150,7 @@ pub fn fit_all(
     };
     enough(&all, least)?;
     let solved = solve_best(&mut all, friction).ok_or_else(not_excited)?;
-    let found = effects::found(all, friction, solved);
+    let found = effects::found(&all, friction, &solved);
     let solved = &found.solved;
     let samples = enough(&found.all, solved.terms)?;
     let mass_std = solved.covariance[(0, 0)].sqrt();

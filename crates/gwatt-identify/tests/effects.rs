@@ -160,19 +160,7 @@ fn a_force_that_ends_is_saturated() {
     // A drive that gives no more than 100 N, and a motion that follows from that.
     let wanted: Vec<f64> = free.iter().map(|f| 1.3 * f).collect();
     let given = clipped(&wanted, limit);
-    let (mut x, mut v) = (0.0, 0.0);
-    let mut position = Vec::new();
-    for force in &given {
-        // The force of a sample is that in its middle.
-        for step in 0..20 {
-            if step == 10 {
-                position.push(x);
-            }
-            let smooth = 300.0 * v + 25.0 * libm::tanh(v / 1e-3) - 6.0;
-            v += PERIOD / 20.0 * (force - smooth) / 80.0;
-            x += PERIOD / 20.0 * v;
-        }
-    }
+    let position = Axis::PLAIN.moved_by(&given);
     let found = fit(recorded(&given, &position, noise, &mut Random(1)));
     assert!(
         matches!(found.saturation, Some(Saturation::Drive { limit: at, .. }) if at == limit),
@@ -188,8 +176,6 @@ fn a_force_that_ends_is_saturated() {
     near(found.mass, 80.0, 0.02);
     assert_eq!(judgement::rigid(&found), Judgement::Saturated);
 }
-
-const PERIOD: f64 = crate::simulated::PERIOD_S;
 
 /// Nothing is found where nothing is: friction, noise, motions of all kinds.
 #[test]

@@ -138,6 +138,26 @@ impl Axis {
             .collect()
     }
 
+    /// Where a force moves it, in the middle of each sample.
+    pub(crate) fn moved_by(&self, force: &[f64]) -> Vec<f64> {
+        const STEPS: usize = 20;
+        let h = PERIOD_S / STEPS as f64;
+        let (mut x, mut v) = (0.0, 0.0);
+        let moved = force.iter().map(|force| {
+            let mut middle = x;
+            for step in 0..STEPS {
+                if step == STEPS / 2 {
+                    middle = x;
+                }
+                let smooth = self.viscous * v + self.coulomb * libm::tanh(v / 1e-3);
+                v += h * (force - smooth - self.offset) / self.mass;
+                x += h * v;
+            }
+            middle
+        });
+        moved.collect()
+    }
+
     fn friction(&self, v: f64) -> f64 {
         let sign = if v == 0.0 { 0.0 } else { v.signum() };
         let falling = self.stribeck.map_or(0.0, |[rise, speed]| {

@@ -149,12 +149,12 @@ fn accelerated(
     clean.iter().map(|a| a + noise * random.normal()).collect()
 }
 
-/// A flexible axis that is recorded for four seconds.
+/// A flexible axis that is recorded for eight seconds.
 fn flexible_case(random: &mut Random, change: impl Fn(&mut TransferFunction)) -> Recording {
     let mut plant = plant(random);
     change(&mut plant);
-    let torque = torque(4000, random);
-    let motion = accelerated(&plant, &torque, 0.05, random);
+    let torque = torque(8000, random);
+    let motion = accelerated(&plant, &torque, 0.03, random);
     recording(torque, motion, Quantity::Acceleration)
 }
 
@@ -198,16 +198,11 @@ const WRONG: [(&str, fn(&mut Random) -> Word); 20] = [
         rigid_word(recorded(&force, &motion.position, none, random))
     }),
     ("force beyond what the drive gives", |random| {
-        changed(random, |force, _| {
-            let limit = 0.9 * rms(force);
-            for f in force {
-                *f += if f.abs() > limit {
-                    f.signum() * 1.5 * (f.abs() - limit)
-                } else {
-                    0.0
-                };
-            }
-        })
+        let (axis, motion, sensors) = (axis(random), motion(random), sensors(random));
+        let wanted: Vec<f64> = axis.force(&motion).iter().map(|f| 1.3 * f).collect();
+        let limit = rms(&wanted);
+        let given: Vec<f64> = wanted.iter().map(|f| f.clamp(-limit, limit)).collect();
+        rigid_word(recorded(&wanted, &axis.moved_by(&given), sensors, random))
     }),
     ("negative viscous friction", |random| {
         other(random, |axis, _| Axis {
@@ -279,12 +274,11 @@ const WRONG: [(&str, fn(&mut Random) -> Word); 20] = [
         other.signals.extend(own.signals.into_iter().skip(1));
         flexible_word(&other, None)
     }),
-    ("flexible: 0.3 s", |random| {
-        let mut recording = flexible_case(random, |_| {});
-        for signal in &mut recording.signals {
-            signal.values.truncate(300);
-        }
-        flexible_word(&recording, None)
+    ("flexible: 0.3 s, noisy", |random| {
+        let plant = plant(random);
+        let torque = torque(300, random);
+        let motion = accelerated(&plant, &torque, 0.5, random);
+        flexible_word(&recording(torque, motion, Quantity::Acceleration), None)
     }),
 ];
 

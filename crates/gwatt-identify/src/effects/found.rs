@@ -27,9 +27,9 @@ pub struct Found {
 }
 
 /// Looks for effects, and for a limit of the force that explains more than they do.
-pub fn found(all: Vec<Equations>, asked: Option<Friction>, solved: Solved) -> Found {
-    let saturation = cut_off(&all, asked);
-    let plain = with_effects(all.clone(), asked, solved.clone());
+pub fn found(all: &[Equations], asked: Option<Friction>, solved: &Solved) -> Found {
+    let saturation = cut_off(all, asked);
+    let plain = with_effects(all.to_vec(), asked, solved.clone());
     let left = left_share(&plain.all, &plain.solved);
     if saturation.is_some() || left <= LEFT {
         return Found {
@@ -37,7 +37,7 @@ pub fn found(all: Vec<Equations>, asked: Option<Friction>, solved: Solved) -> Fo
             ..plain
         };
     }
-    let Some((limit, solved, all)) = beyond(&all, asked, &solved) else {
+    let Some((limit, solved, all)) = beyond(all, asked, solved) else {
         return plain;
     };
     let held = with_effects(all, asked, solved);
