@@ -9,7 +9,7 @@ use realfft::num_complex::Complex;
 const PERIODS_MIN: f64 = 3.0;
 /// Places of a recording, at least and at most.
 const PLACES: [usize; 2] = [1 << 10, 1 << 19];
-/// Spectra are this many times finer than the range tells apart.
+/// Spectra are this many times finer than the range distinguishes.
 const FINER: usize = 4;
 /// A period has this many places at least.
 const PLACES_A_PERIOD: usize = 4;
@@ -63,7 +63,7 @@ fn ends(x: &[f64]) -> (f64, f64) {
 }
 
 /// The power at each multiple of 1/(4·range), summed over the recordings, up to the shortest
-/// period that the places tell.
+/// period that the places show.
 fn spectrum(recordings: &[Left], range: f64, places: usize, by_place: bool) -> Vec<f64> {
     let length = FINER * places;
     let fft = RealFftPlanner::<f64>::new().plan_fft_forward(length);
