@@ -158,7 +158,10 @@ fn flexible_case(random: &mut Random, change: impl Fn(&mut TransferFunction)) ->
     recording(torque, motion, Quantity::Acceleration)
 }
 
-const WRONG: [(&str, fn(&mut Random) -> Word); 20] = [
+/// A kind of recording, and what comes of one of it.
+type Kind = (&'static str, fn(&mut Random) -> Word);
+
+const WRONG: [Kind; 20] = [
     ("reversed", |random| {
         changed(random, |force, _| force.iter_mut().for_each(|f| *f = -*f))
     }),
@@ -284,7 +287,7 @@ const WRONG: [(&str, fn(&mut Random) -> Word); 20] = [
 
 fn right(seed: u64) -> (&'static str, Word) {
     let mut random = Random(1000 + seed);
-    if seed % 2 == 0 {
+    if seed.is_multiple_of(2) {
         ("rigid", changed(&mut random, |_, _| {}))
     } else {
         let recording = flexible_case(&mut random, |_| {});
