@@ -6,7 +6,7 @@ use nalgebra::DVector;
 use super::column::Kind;
 use super::effects::{self, Effect, Found, Saturation, Shape};
 use super::equations::Equations;
-use super::figure::Figure;
+pub use super::figure::Figure;
 use super::friction::{Solved, Terms, inertial, left_above, left_of, solve_best};
 use super::noise::Whiteness;
 use super::recording::Recording;
