@@ -5,7 +5,7 @@ use std::io::{self, Read, Write};
 
 use serde_json::{Value, json};
 
-use super::identified::number;
+use super::estimate::number;
 use crate::contour::{ArcResult, ContourRow, ContourSummary, Errors, Roundness};
 
 /// Columns of the CSV.

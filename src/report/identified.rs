@@ -5,6 +5,8 @@ use std::io::{self, Write};
 
 use serde_json::{Map, Value, json};
 
+use super::effects::{effects_json, effects_text, saturation_json};
+use super::estimate::{insert, number, shown};
 use crate::identify::flexible::{Flexible, Root};
 use crate::identify::judgement::{self, Judgement};
 use crate::identify::power_fit::PowerModel;
@@ -59,18 +61,6 @@ impl Heading {
     }
 }
 
-/// Null for what is not known or not finite.
-pub(super) fn number(value: Option<f64>) -> Value {
-    value
-        .filter(|v| v.is_finite())
-        .map_or(Value::Null, |v| json!(v))
-}
-
-fn insert(map: &mut Map<String, Value>, key: &str, figure: Option<Figure>) {
-    map.insert(key.to_owned(), number(figure.map(|f| f.value)));
-    map.insert(format!("{key}_std"), number(figure.map(|f| f.std)));
-}
-
 fn finish(map: Map<String, Value>, out: &mut dyn Write) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut *out, &Value::Object(map))?;
     writeln!(out)
@@ -116,6 +106,8 @@ pub fn rigid_json(heading: &Heading, rigid: &Rigid, out: &mut dyn Write) -> io::
     map.insert("bandwidth_hz".into(), json!(rigid.bandwidth_hz));
     map.insert("white".into(), json!(rigid.whiteness.is_white()));
     map.insert("resonates".into(), json!(rigid.resonates));
+    map.insert("effects".into(), effects_json(rigid));
+    map.insert("saturation".into(), saturation_json(rigid));
     judged(&mut map, judgement::rigid(rigid));
     finish(map, out)
 }
@@ -237,25 +229,6 @@ pub fn margin(model: &PowerModel) -> f64 {
     1.0 - 1.0 / model.peaks.factor.max(1.0)
 }
 
-/// A figure with four digits, and its error with two.
-pub(super) fn shown(figure: Figure) -> String {
-    // What is printed of a number, at least.
-    let least = 1e-12;
-    let digits = |value: f64, digits: i32| -> String {
-        if value == 0.0 || !value.is_finite() {
-            return format!("{value}");
-        }
-        let place = digits - 1 - libm::floor(libm::log10(value.abs())) as i32;
-        let places = usize::try_from(place.clamp(0, 12)).unwrap_or(0);
-        format!("{value:.places$}")
-    };
-    if figure.std.is_finite() && figure.std >= least {
-        format!("{} ± {}", digits(figure.value, 5), digits(figure.std, 2))
-    } else {
-        digits(figure.value, 5)
-    }
-}
-
 fn percent(share: f64) -> String {
     format!("{:.2} %", 100.0 * share)
 }
@@ -311,6 +284,7 @@ pub fn rigid_text(heading: &Heading, rigid: &Rigid) -> String {
     if let Some(offset) = rigid.offset {
         let _ = writeln!(text, "  offset            {} {force}", shown(offset));
     }
+    text.push_str(&effects_text(rigid, force));
     let _ = writeln!(text, "  relative error    {}", percent(rigid.rel_error));
     tail(&mut text, heading);
     let _ = writeln!(text, "verdict: {}", judgement::rigid(rigid));

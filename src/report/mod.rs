@@ -11,6 +11,8 @@ mod contoured;
 mod csv;
 mod drawing;
 mod drives;
+mod effects;
+mod estimate;
 mod figure;
 mod finding;
 mod github;

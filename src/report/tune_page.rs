@@ -8,7 +8,7 @@ use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
-use super::identified::number;
+use super::estimate::number;
 use crate::identify::tune::{AxisResponse, LowPass, Tuned};
 use crate::identify::{Factor, FrequencyResponse};
 

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
-use super::identified::{number, shown};
+use super::estimate::{number, shown};
 use crate::identify::Figure;
 use crate::identify::Judgement;
 use crate::identify::tune::{

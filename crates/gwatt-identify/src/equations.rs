@@ -4,10 +4,13 @@
 //! regressors pass the same low-pass, and are decimated to what it leaves (Gautier
 //! 1997, "Dynamic identification of robots with power model").
 
-use super::column::Quantity;
+use std::sync::Arc;
+
+use super::agreement::agree;
+use super::column::{Kind, Quantity};
 use super::filter::{derivative, low_pass, second_derivative};
-use super::quality;
-use super::recording::Recording;
+use super::quality::{self, CutOff};
+use super::recording::{Recording, Signal};
 use super::trouble::{Outcome, Trouble};
 
 /// Below this share of the largest speed an axis counts as standing.
@@ -38,6 +41,8 @@ pub(super) struct Band {
     pub(super) acceleration: Vec<f64>,
     /// Absent where no speed is known.
     pub(super) speeds: Option<Speeds>,
+    /// What else the force is made of: a column for each unknown.
+    pub(super) further: Vec<Vec<f64>>,
 }
 
 /// Equations of one recording.
@@ -52,13 +57,29 @@ pub(super) struct Equations {
     pub(super) counts: Vec<bool>,
     /// Distance of samples, s.
     pub(super) step_s: f64,
+    /// What they were made of.
+    pub(super) raw: Arc<Raw>,
+    /// End of the band, Hz.
+    pub(super) bandwidth_hz: f64,
 }
 
-/// The signals before the common filter.
-struct Raw {
-    force: Vec<f64>,
-    acceleration: Vec<f64>,
-    velocity: Option<Vec<f64>>,
+/// The signals before the common filter, sample by sample.
+#[derive(Debug, Clone)]
+pub(super) struct Raw {
+    /// Force, N or N·m.
+    pub(super) force: Vec<f64>,
+    /// Acceleration, m/s² or rad/s².
+    pub(super) acceleration: Vec<f64>,
+    /// Speed, m/s or rad/s.
+    pub(super) velocity: Option<Vec<f64>>,
+    /// Position, m or rad: as it was measured, or summed up from the speed.
+    pub(super) position: Option<Vec<f64>>,
+    /// Distance of samples, s.
+    pub(super) period_s: f64,
+    /// Whether the motion slides or turns.
+    pub(super) motion: Kind,
+    /// Where the force stands at its largest or smallest value.
+    pub(super) cut_off: Option<CutOff>,
 }
 
 /// The force of a recording in N (N·m where the motion turns).
@@ -79,6 +100,7 @@ pub(super) fn force_of(recording: &Recording) -> Outcome<Vec<f64>> {
 fn raw(recording: &Recording, bandwidth_hz: f64) -> Outcome<Raw> {
     let t = recording.period_s;
     let force = force_of(recording)?;
+    agree(recording)?;
     for signal in &recording.signals {
         if matches!(
             signal.quantity,
@@ -89,7 +111,7 @@ fn raw(recording: &Recording, bandwidth_hz: f64) -> Outcome<Raw> {
                 "record a motion to and fro; gwatt excite makes signals",
             )?;
         }
-        if matches!(signal.quantity, Quantity::Force | Quantity::Acceleration) {
+        if signal.quantity == Quantity::Acceleration {
             quality::not_saturated(signal)?;
         }
     }
@@ -116,14 +138,38 @@ fn raw(recording: &Recording, bandwidth_hz: f64) -> Outcome<Raw> {
             ));
         }
     };
+    let position = position.or_else(|| velocity.as_ref().map(|speed| summed(speed, t)));
+    let moving = |signal: &&Signal| {
+        !matches!(
+            signal.quantity,
+            Quantity::Force | Quantity::Excitation | Quantity::Command
+        )
+    };
+    let motion = recording.signals.iter().find(moving);
+    let cut_off = recording.get(Quantity::Force).and_then(quality::cut_off);
     Ok(Raw {
         force,
         acceleration,
         velocity,
+        position,
+        period_s: t,
+        motion: motion.map_or(Kind::Linear, |signal| signal.kind),
+        cut_off,
     })
 }
 
-fn sign(v: f64) -> f64 {
+/// The sum of a speed over time, from 0 on.
+fn summed(speed: &[f64], period_s: f64) -> Vec<f64> {
+    let mut at = 0.0;
+    let steps = speed.windows(2).map(|pair| {
+        at += 0.5 * period_s * pair.iter().sum::<f64>();
+        at
+    });
+    std::iter::once(0.0).chain(steps).collect()
+}
+
+/// 1 forward, −1 backward, 0 at rest.
+pub(super) fn sign(v: f64) -> f64 {
     if v > 0.0 {
         1.0
     } else if v < 0.0 {
@@ -152,6 +198,7 @@ impl Raw {
             force: filter(&self.force),
             acceleration: filter(&self.acceleration),
             speeds,
+            further: Vec::new(),
         }
     }
 }
@@ -169,6 +216,23 @@ fn thin(x: Vec<f64>, step: usize, edge: usize) -> Vec<f64> {
     x.into_iter().skip(edge).take(inner).step_by(step).collect()
 }
 
+/// What the band leaves of a column.
+fn in_band(x: &[f64], bandwidth_hz: f64, t: f64) -> Vec<f64> {
+    let (step, edge) = thinning(x.len(), bandwidth_hz, t);
+    thin(low_pass(x, bandwidth_hz, t), step, edge)
+}
+
+/// What lies between the band's end and twice as far.
+fn above_band(x: &[f64], bandwidth_hz: f64, t: f64) -> Vec<f64> {
+    let (step, edge) = thinning(x.len(), bandwidth_hz, t);
+    let (wide, narrow) = (
+        low_pass(x, 2.0 * bandwidth_hz, t),
+        low_pass(x, bandwidth_hz, t),
+    );
+    let apart = wide.iter().zip(&narrow).map(|(w, n)| w - n);
+    thin(apart.collect(), step, edge)
+}
+
 impl Equations {
     /// Those of a recording in a band from 0 Hz on.
     ///
@@ -178,17 +242,54 @@ impl Equations {
     pub(super) fn of(recording: &Recording, bandwidth_hz: f64) -> Outcome<Self> {
         let t = recording.period_s;
         let raw = raw(recording, bandwidth_hz)?;
-        let mut out = Self::within(&raw, bandwidth_hz, t);
-        let (step, edge) = thinning(raw.force.len(), bandwidth_hz, t);
-        out.above = Some(raw.filtered(|x| {
-            let (wide, narrow) = (
-                low_pass(x, 2.0 * bandwidth_hz, t),
-                low_pass(x, bandwidth_hz, t),
-            );
-            let apart = wide.iter().zip(&narrow).map(|(w, n)| w - n);
-            thin(apart.collect(), step, edge)
-        }));
+        let above = raw.filtered(|x| above_band(x, bandwidth_hz, t));
+        let mut out = Self::within(raw, bandwidth_hz);
+        out.above = Some(above);
         Ok(out)
+    }
+
+    /// A column of all samples in the band, as the others are.
+    pub(super) fn in_band(&self, column: &[f64]) -> Vec<f64> {
+        in_band(column, self.bandwidth_hz, self.raw.period_s)
+    }
+
+    /// Adds columns, sample by sample; those without samples are 0.
+    pub(super) fn add(&mut self, columns: &[Vec<f64>]) {
+        let t = self.raw.period_s;
+        let none = vec![0.0; self.inside.force.len()];
+        for column in columns {
+            let (inside, above) = if column.is_empty() {
+                (none.clone(), none.clone())
+            } else {
+                (
+                    self.in_band(column),
+                    above_band(column, self.bandwidth_hz, t),
+                )
+            };
+            self.inside.further.push(inside);
+            if let Some(band) = &mut self.above {
+                band.further.push(above);
+            }
+        }
+    }
+
+    /// Puts another force into the place of the recorded one.
+    pub(super) fn replace_force(&mut self, force: Vec<f64>) {
+        let t = self.raw.period_s;
+        self.inside.force = self.in_band(&force);
+        if let Some(band) = &mut self.above {
+            band.force = above_band(&force, self.bandwidth_hz, t);
+        }
+        self.raw = Arc::new(Raw {
+            force,
+            ..Raw::clone(&self.raw)
+        });
+    }
+
+    /// Values of all samples that stand at the places of the equations.
+    pub(super) fn thinned(&self, column: &[f64]) -> Vec<f64> {
+        let (step, edge) = thinning(column.len(), self.bandwidth_hz, self.raw.period_s);
+        thin(column.to_vec(), step, edge)
     }
 
     /// Those of a recording with this speed, where it has none of its own: within the
@@ -208,12 +309,13 @@ impl Equations {
             let smooth_hz = (SMOOTH * bandwidth_hz).min(0.4 / t);
             raw.velocity = Some(low_pass(speed, smooth_hz, t));
         }
-        Ok(Self::within(&raw, bandwidth_hz, t))
+        Ok(Self::within(raw, bandwidth_hz))
     }
 
-    fn within(raw: &Raw, bandwidth_hz: f64, t: f64) -> Self {
-        let (step, edge) = thinning(raw.force.len(), bandwidth_hz, t);
-        let inside = raw.filtered(|x| thin(low_pass(x, bandwidth_hz, t), step, edge));
+    fn within(raw: Raw, bandwidth_hz: f64) -> Self {
+        let t = raw.period_s;
+        let (step, _) = thinning(raw.force.len(), bandwidth_hz, t);
+        let inside = raw.filtered(|x| in_band(x, bandwidth_hz, t));
         let fastest = raw
             .velocity
             .iter()
@@ -234,6 +336,8 @@ impl Equations {
             above: None,
             counts,
             step_s: step as f64 * t,
+            raw: Arc::new(raw),
+            bandwidth_hz,
         }
     }
 
@@ -267,6 +371,30 @@ impl Equations {
         let all = speeds.forward.iter().zip(&speeds.backward);
         for ((forward, backward), counts) in all.zip(&mut self.counts) {
             *counts = *counts && (forward + backward > 0.0) != is_forward;
+        }
+    }
+}
+
+#[cfg(test)]
+impl Equations {
+    /// Those of a band that is given as it is, every 0.01 s.
+    pub(super) fn of_band(band: Band) -> Self {
+        let samples = band.force.len();
+        Self {
+            above: Some(band.clone()),
+            raw: Arc::new(Raw {
+                force: band.force.clone(),
+                acceleration: band.acceleration.clone(),
+                velocity: None,
+                position: None,
+                period_s: 0.01,
+                motion: Kind::Linear,
+                cut_off: None,
+            }),
+            inside: band,
+            counts: vec![true; samples],
+            step_s: 0.01,
+            bandwidth_hz: 40.0,
         }
     }
 }

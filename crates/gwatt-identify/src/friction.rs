@@ -36,8 +36,8 @@ pub(super) enum Terms {
     Constant,
 }
 
-/// Stretches of which each is predicted by the others.
-const STRETCHES: usize = 8;
+/// Parts of the recordings of which each is predicted by the others.
+const PARTS: usize = 8;
 /// Standard errors from which on directions differ.
 const CLEAR: f64 = 3.0;
 /// By which share the errors of prediction fall at least.
@@ -70,6 +70,23 @@ impl Terms {
         }
     }
 
+    /// Viscous and Coulomb friction of both directions, as a mean. `None` where the motion
+    /// does not show them.
+    pub(super) fn friction_in(self, theta: &[f64]) -> Option<[f64; 2]> {
+        let at = |index: usize| theta.get(index).copied().unwrap_or_default();
+        match self {
+            Self::Symmetric => Some([at(1), at(2)]),
+            Self::Directional => Some([0.5 * (at(1) + at(2)), 0.5 * (at(3) + at(4))]),
+            Self::Dry => Some([0.0, at(1)]),
+            Self::Offset | Self::OneWay | Self::Constant => None,
+        }
+    }
+
+    /// Unknowns of these equations: the terms, and what else the force is made of.
+    pub(super) fn width_of(self, equations: &Equations) -> usize {
+        self.width() + equations.inside.further.len()
+    }
+
     /// The regressors of an equation; `one` is that of a constant.
     fn row(self, band: &Band, k: usize, one: f64, row: &mut Vec<f64>) {
         let at = |x: &[f64]| x.get(k).copied().unwrap_or_default();
@@ -90,11 +107,12 @@ impl Terms {
             Self::Dry => row.extend([fs + bs, one]),
             Self::OneWay => row.extend([fv + bv, one]),
         }
+        row.extend(band.further.iter().map(|column| at(column)));
     }
 
     /// Calls with each equation that counts: its regressors and its force.
     fn each(self, equations: &Equations, mut with: impl FnMut(&[f64], f64)) {
-        let mut row = Vec::with_capacity(self.width());
+        let mut row = Vec::with_capacity(self.width_of(equations));
         let forces = equations.inside.force.iter().zip(&equations.counts);
         for (k, (force, _)) in forces.enumerate().filter(|(_, (_, counts))| **counts) {
             self.row(&equations.inside, k, 1.0, &mut row);
@@ -103,8 +121,52 @@ impl Terms {
     }
 }
 
+fn width_of(all: &[Equations], terms: Terms) -> usize {
+    all.first()
+        .map_or(terms.width(), |equations| terms.width_of(equations))
+}
+
 fn product(row: &[f64], theta: &[f64]) -> f64 {
     row.iter().zip(theta).map(|(x, t)| x * t).sum()
+}
+
+/// Calls with each equation that counts: its regressors and its force.
+pub(super) fn counted_rows(equations: &Equations, terms: Terms, with: impl FnMut(&[f64], f64)) {
+    terms.each(equations, with);
+}
+
+/// The sum of squares that is left with further columns, given for each recording. `None` where the motion does not determine them.
+pub(super) fn rest_of(all: &[Equations], terms: Terms, further: &[Vec<Vec<f64>>]) -> Option<f64> {
+    let more = further.first().map_or(0, Vec::len);
+    let mut normal = Normal::new(width_of(all, terms) + more);
+    let mut long = Vec::new();
+    for (equations, columns) in all.iter().zip(further) {
+        let counted = equations.counts.iter().enumerate();
+        let mut places = counted.filter(|(_, counts)| **counts).map(|(k, _)| k);
+        terms.each(equations, |row, force| {
+            let Some(k) = places.next() else { return };
+            long.clear();
+            long.extend_from_slice(row);
+            let at = |column: &Vec<f64>| column.get(k).copied().unwrap_or_default();
+            long.extend(columns.iter().map(at));
+            normal.add(&long, force);
+        });
+    }
+    normal.solve().map(|solution| solution.rest)
+}
+
+/// The last unknowns of an equation, where those before are known.
+pub(super) fn refit(equations: &Equations, terms: Terms, known: &[f64]) -> Option<Vec<f64>> {
+    let width = terms.width_of(equations).checked_sub(known.len())?;
+    if width == 0 {
+        return Some(Vec::new());
+    }
+    let mut normal = Normal::new(width);
+    terms.each(equations, |row, force| {
+        let (before, last) = row.split_at(known.len().min(row.len()));
+        normal.add(last, force - product(before, known));
+    });
+    Some(normal.solve()?.x.iter().copied().collect())
 }
 
 /// Sums of squares of what a model leaves of the force, and of the force.
@@ -154,7 +216,7 @@ pub(super) fn inertial(equations: &Equations, terms: Terms, theta: &[f64]) -> Ve
 
 /// Solves for a set of terms. `None` where the motion does not determine them.
 pub(super) fn solve(all: &[Equations], terms: Terms) -> Option<Solved> {
-    let mut normal = Normal::new(terms.width());
+    let mut normal = Normal::new(width_of(all, terms));
     for equations in all {
         terms.each(equations, |row, force| normal.add(row, force));
     }
@@ -195,7 +257,7 @@ fn robust(
         .zip(residuals)
         .map(|(equations, residuals)| {
             let mut left = residuals.iter();
-            let mut scores = Vec::with_capacity(residuals.len() * terms.width());
+            let mut scores = Vec::with_capacity(residuals.len() * width_of(all, terms));
             terms.each(equations, |row, _| {
                 let residual = left.next().copied().unwrap_or_default();
                 scores.extend(row.iter().map(|x| x * residual));
@@ -207,7 +269,7 @@ fn robust(
     let known = INDEPENDENT * n as f64;
     // Two of these errors are to hold as often as those of a normal deviate: Student's
     // deviates have the variance ν/(ν − 2).
-    let freedom = (known - terms.width() as f64 - 2.0).max(0.5);
+    let freedom = (known - width_of(all, terms) as f64 - 2.0).max(0.5);
     sandwich(&scores, inverse) * (known / freedom) * widening(n)
 }
 
@@ -257,14 +319,16 @@ fn by_data(all: &[Equations]) -> Option<Solved> {
     let Some(directional) = solve(all, Terms::Directional) else {
         return Some(symmetric);
     };
-    let apart = DVector::from_vec(vec![0.0, 1.0, -1.0, 0.0, 0.0]);
+    let mut apart = vec![0.0, 1.0, -1.0, 0.0, 0.0];
+    apart.resize(directional.theta.len(), 0.0);
+    let apart = DVector::from_vec(apart);
     let difference = product(apart.as_slice(), &directional.theta);
     let std = (&directional.covariance * &apart)
         .dot(&apart)
         .max(0.0)
         .sqrt();
     let is_better = || {
-        let error = |terms| predicted(all, terms);
+        let error = |terms| predicted(all, terms, 1);
         matches!(
             (error(Terms::Symmetric), error(Terms::Directional)),
             (Some(one), Some(two)) if two < (1.0 - BETTER) * one
@@ -277,24 +341,25 @@ fn by_data(all: &[Equations]) -> Option<Solved> {
     }
 }
 
-/// Sum of squares of what each stretch leaves of the prediction by the others.
-fn predicted(all: &[Equations], terms: Terms) -> Option<f64> {
+/// Sum of squares of what is left of each of eight parts when it is predicted by the others.
+/// The parts consist of so many stretches each, in turn.
+pub(super) fn predicted(all: &[Equations], terms: Terms, stretches: usize) -> Option<f64> {
     let mut rows: Vec<(Vec<f64>, f64)> = Vec::new();
     for equations in all {
         terms.each(equations, |row, force| rows.push((row.to_vec(), force)));
     }
-    let length = rows.len().div_ceil(STRETCHES).max(1);
+    let length = rows.len().div_ceil(PARTS * stretches).max(1);
     let mut sum = 0.0;
-    for index in 0..rows.len().div_ceil(length) {
-        let stretch = index * length..((index + 1) * length).min(rows.len());
-        let mut normal = Normal::new(terms.width());
+    for part in 0..PARTS {
+        let is_in = |k: usize| k / length % PARTS == part;
+        let mut normal = Normal::new(width_of(all, terms));
         for (k, (row, force)) in rows.iter().enumerate() {
-            if !stretch.contains(&k) {
+            if !is_in(k) {
                 normal.add(row, *force);
             }
         }
         let solution = normal.solve()?;
-        for (row, force) in rows.get(stretch)? {
+        for (_, (row, force)) in rows.iter().enumerate().filter(|(k, _)| is_in(*k)) {
             let left = force - product(row, solution.x.as_slice());
             sum += left * left;
         }
@@ -319,6 +384,7 @@ mod tests {
         let band = Band {
             force: force.collect(),
             acceleration,
+            further: Vec::new(),
             speeds: Some(Speeds {
                 forward: part(|v| v.max(0.0)),
                 backward: part(|v| v.min(0.0)),
@@ -326,12 +392,7 @@ mod tests {
                 backward_sign: part(|v| if v < 0.0 { -1.0 } else { 0.0 }),
             }),
         };
-        Equations {
-            above: Some(band.clone()),
-            inside: band,
-            counts: vec![true; 80],
-            step_s: 0.01,
-        }
+        Equations::of_band(band)
     }
 
     /// What the motion does not tell apart is joined: at ±2 m/s friction is 9 N.

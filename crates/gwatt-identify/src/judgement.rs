@@ -2,9 +2,11 @@
 
 use std::fmt;
 
+use super::effects::{Effect, Saturation};
+use super::figure::Figure;
 use super::flexible::{Flexible, Root};
 use super::power_fit::PowerModel;
-use super::rigid::{Figure, Rigid};
+use super::rigid::Rigid;
 
 /// A plain word.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +27,14 @@ pub enum Judgement {
     Reversed,
     /// A damping or a viscous friction comes out clearly negative.
     NegativeDamping,
+    /// A force that is periodic in position is a fair part of the whole.
+    Cogging,
+    /// Force is missing after each reversal.
+    Backlash,
+    /// Friction falls with the speed, by a fair part of the force.
+    Stribeck,
+    /// The force that moves the axis ends at a value, and the recorded one is another.
+    Saturated,
     /// What is left is more than noise, and too much of the whole.
     MoreThanNoise,
     /// The method gives no standard errors.
@@ -44,6 +54,10 @@ impl Judgement {
             Self::NotRigid => "not rigid",
             Self::Reversed => "reversed",
             Self::NegativeDamping => "negative damping",
+            Self::Cogging => "cogging",
+            Self::Backlash => "backlash",
+            Self::Stribeck => "Stribeck friction",
+            Self::Saturated => "saturated",
             Self::MoreThanNoise => "more than noise is left",
             Self::NoErrors => "no standard errors",
             Self::DoesNotFit => "the model does not fit",
@@ -66,6 +80,18 @@ impl fmt::Display for Judgement {
             ),
             Self::NegativeDamping => f.write_str(
                 "negative damping: no axis has it; the model stands for something else, such as friction, backlash or another mode",
+            ),
+            Self::Cogging => f.write_str(
+                "cogging: a force that is periodic in position; mass and friction are estimated next to it, but a machine file has no place for it: a margin must cover its amplitude times the speed",
+            ),
+            Self::Backlash => f.write_str(
+                "backlash: force is missing after each reversal, as in a play; take up the play (preload, nut, belt), and record again",
+            ),
+            Self::Stribeck => f.write_str(
+                "Stribeck friction: it falls as the axis begins to move; mass and friction are estimated next to it, but a machine file has Coulomb friction alone: where the axis creeps, it is that of breakaway",
+            ),
+            Self::Saturated => f.write_str(
+                "saturated: the force ends at a value, and the motion does not go with what was recorded; record with a smaller amplitude, or the force that the drive gives",
             ),
             Self::MoreThanNoise => f.write_str(
                 "more than noise is left: the model misses something, such as friction, cogging, backlash or another mode",
@@ -100,6 +126,10 @@ const REL_ERROR: f64 = 0.5;
 const REL_ERROR_FLEXIBLE: f64 = 0.9;
 /// What may be left besides noise, as a share of the whole.
 const MISSED: f64 = 0.1;
+/// The same where most of what is left follows from the input: a mode that is missing takes
+/// the inertia along.
+const MOSTLY: f64 = 0.5;
+const MOSTLY_MISSED: f64 = 0.04;
 /// So many times as much as noise would leave is more than noise: noise of a sensor is
 /// as strong above the band as within, or stronger.
 const NOISY: f64 = 2.0;
@@ -132,11 +162,16 @@ fn is_negative(figure: Figure) -> bool {
 /// Judges a rigid axis. Friction counts against the larger of its parts.
 #[must_use]
 pub fn rigid(axis: &Rigid) -> Judgement {
-    if axis.mass.value > 0.0 && axis.resonates {
-        return Judgement::NotRigid;
-    }
     if is_negative(axis.mass) && axis.rel_error <= REL_ERROR {
         return Judgement::Reversed;
+    }
+    if axis.mass.value > 0.0
+        && let Some(word) = named(axis)
+    {
+        return word;
+    }
+    if axis.mass.value > 0.0 && axis.resonates {
+        return Judgement::NotRigid;
     }
     if axis.mass.value <= 0.0 || axis.rel_error > REL_ERROR {
         return Judgement::DoesNotFit;
@@ -156,6 +191,23 @@ pub fn rigid(axis: &Rigid) -> Judgement {
         }
     }
     longer(times)
+}
+
+/// What makes up a fair part of the force besides mass and friction, where that is known by
+/// its sign.
+fn named(axis: &Rigid) -> Option<Judgement> {
+    if let Some(Saturation::Recording { .. } | Saturation::Beyond { .. }) = axis.saturation {
+        return Some(Judgement::Saturated);
+    }
+    // What explains less than it leaves is not what the axis has for the most part.
+    let is_much = |share: f64| share > MISSED && (share > axis.rel_error || !axis.resonates);
+    let effects = axis.effects.iter().filter(|effect| is_much(effect.share()));
+    let most = effects.max_by(|a, b| a.share().total_cmp(&b.share()))?;
+    Some(match most {
+        Effect::Cogging { .. } => Judgement::Cogging,
+        Effect::Backlash { .. } => Judgement::Backlash,
+        Effect::Stribeck { .. } => Judgement::Stribeck,
+    })
 }
 
 /// Judges a flexible axis.
@@ -204,7 +256,8 @@ fn leaves_more_than_noise(axis: &Flexible) -> bool {
     let missed = axis.rel_error * axis.missed_share.sqrt();
     let is_coloured = !axis.whiteness.is_white() && axis.rel_error > MISSED;
     let is_unsteady = !axis.steadiness.is_white() && axis.rel_error > UNSTEADY;
-    missed > MISSED || is_coloured || is_unsteady
+    let is_mostly_missed = axis.missed_share > MOSTLY && missed > MOSTLY_MISSED;
+    missed > MISSED || is_mostly_missed || is_coloured || is_unsteady
 }
 
 /// Judges a power model.

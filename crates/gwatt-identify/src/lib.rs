@@ -11,6 +11,7 @@
 //! [`response_table`] write what was found into machine files.
 
 pub mod design;
+pub mod effects;
 pub mod excitation;
 pub mod flexible;
 pub mod judgement;
@@ -21,7 +22,7 @@ pub mod response_table;
 pub mod rigid;
 pub mod tune;
 
-mod parts;
+mod agreement;
 mod any_delay;
 mod arx;
 mod charge;
@@ -36,6 +37,7 @@ mod discrete;
 mod disturbance;
 mod equations;
 mod fewer_rows;
+mod figure;
 mod filter;
 mod friction;
 mod header_name;
@@ -53,6 +55,7 @@ mod normal;
 mod output_error;
 mod parallel;
 mod parameters;
+mod parts;
 mod peak_factor;
 mod places;
 mod polynomial;
@@ -81,13 +84,13 @@ mod trouble;
 pub use column::{Kind, Quantity};
 pub use column_map::MappedColumn;
 pub use discrete::{Discrete, NoTwin, SampledResponse};
+pub use figure::Figure;
 pub use judgement::Judgement;
 pub use neighbours::Given;
 pub use noise::Whiteness;
 pub use peak_factor::PeakFactor;
 pub use polynomial::roots;
 pub use recording::{ReadAs, Recording, Signal};
-pub use rigid::Figure;
 pub use spectrum::{FrequencyResponse, measure};
 pub use state_space::{Measured, Sampled, Simulation, simulate};
 pub use transfer::{Factor, TransferFunction, factors_of};

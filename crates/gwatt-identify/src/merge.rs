@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
+use super::figure::Figure;
 use super::parts;
-use super::rigid::Figure;
 use super::trouble::{Outcome, Trouble};
 use gwatt_machine::units::M_PER_MM;
 use gwatt_machine::{Axis, AxisId, AxisKind, Machine};

@@ -17,9 +17,9 @@ use nalgebra::DMatrix;
 
 use super::charge::charge;
 use super::data::{Data, Signals};
+use super::figure::Figure;
 use super::normal::{Normal, Solution};
 use super::parameters::{is_admissible, parameters, with};
-use super::rigid::Figure;
 use super::sensitivity::{differences, gather};
 use super::transfer::TransferFunction;
 

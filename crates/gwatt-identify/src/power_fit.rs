@@ -5,9 +5,9 @@
 //! positive and multiplied where it is not, plus the standby power. Terms that
 //! the log does not show are left out.
 
+use super::figure::Figure;
 use super::normal::Normal;
 use super::peak_factor::{PeakFactor, factor_of, ratios};
-use super::rigid::Figure;
 use super::sandwich::{sandwich, widening};
 use super::trouble::{Outcome, Trouble};
 

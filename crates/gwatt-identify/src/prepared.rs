@@ -1,5 +1,6 @@
 //! Input and output of a flexible axis, as they are fitted.
 
+use super::agreement::agree;
 use super::choice::{Choice, Method};
 use super::column::Quantity;
 use super::command_input::CommandInput;
@@ -55,6 +56,7 @@ pub(super) fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepare
         }
     };
     quality::moves(input_signal, help)?;
+    agree(recording)?;
     // A command that stands at the end of its stroke is meant to.
     if is_force {
         quality::not_saturated(input_signal)?;

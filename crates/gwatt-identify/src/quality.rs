@@ -20,15 +20,25 @@ pub fn moves(signal: &Signal, help: &str) -> Outcome<()> {
     ))
 }
 
-/// Refuses a signal that is cut off: a fair part of its samples stand, several
+/// Where a signal is cut off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CutOff {
+    /// The value that it does not pass.
+    pub level: f64,
+    /// Whether that is its largest one, or else its smallest.
+    pub is_largest: bool,
+    /// Samples that stand there, in a row with others.
+    pub samples: usize,
+    /// Their share of all samples, those at the other end included.
+    pub share: f64,
+}
+
+/// Whether a signal is cut off: a fair part of its samples stand, several
 /// in a row, at exactly its largest or smallest value, while the rest varies
 /// from sample to sample. Signals of few levels, such as an M-sequence, are
 /// meant to.
-///
-/// # Errors
-///
-/// When it is.
-pub fn not_saturated(signal: &Signal) -> Outcome<()> {
+#[must_use]
+pub fn cut_off(signal: &Signal) -> Option<CutOff> {
     const SHARE: f64 = 0.01;
     const RUN: usize = 3;
     let n = signal.values.len();
@@ -45,9 +55,9 @@ pub fn not_saturated(signal: &Signal) -> Outcome<()> {
         .filter(|v| **v != low && **v != high)
         .count();
     if changes * 4 < n || inside * 4 < n {
-        return Ok(());
+        return None;
     }
-    for (level, name) in [(high, "largest"), (low, "smallest")] {
+    let stuck = |level: f64| {
         let (mut run, mut stuck) = (0, 0);
         for value in &signal.values {
             run = if *value == level { run + 1 } else { 0 };
@@ -57,17 +67,42 @@ pub fn not_saturated(signal: &Signal) -> Outcome<()> {
                 stuck += 1;
             }
         }
-        if stuck as f64 > SHARE * n as f64 {
-            return Err(Trouble::new(
-                format!(
-                    "{} is saturated: {stuck} samples stand at its {name} value {level}",
-                    signal.name
-                ),
-                "record again with a smaller amplitude, or with a larger range of the sensor",
-            ));
-        }
-    }
-    Ok(())
+        stuck
+    };
+    let (above, below) = (stuck(high), stuck(low));
+    let found = [(high, true, above), (low, false, below)];
+    let (level, is_largest, samples) = found
+        .into_iter()
+        .find(|(_, _, stuck)| *stuck as f64 > SHARE * n as f64)?;
+    Some(CutOff {
+        level,
+        is_largest,
+        samples,
+        share: (above + below) as f64 / n as f64,
+    })
+}
+
+/// Refuses a signal that is cut off.
+///
+/// # Errors
+///
+/// When it is.
+pub fn not_saturated(signal: &Signal) -> Outcome<()> {
+    let Some(found) = cut_off(signal) else {
+        return Ok(());
+    };
+    let name = if found.is_largest {
+        "largest"
+    } else {
+        "smallest"
+    };
+    Err(Trouble::new(
+        format!(
+            "{} is saturated: {} samples stand at its {name} value {}",
+            signal.name, found.samples, found.level
+        ),
+        "record again with a smaller amplitude, or with a larger range of the sensor",
+    ))
 }
 
 fn range(x: &[f64]) -> (f64, f64) {

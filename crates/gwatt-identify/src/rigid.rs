@@ -3,7 +3,10 @@
 
 use nalgebra::DVector;
 
+use super::column::Kind;
+use super::effects::{self, Effect, Found, Saturation, Shape};
 use super::equations::Equations;
+pub use super::figure::Figure;
 use super::friction::{Solved, Terms, inertial, left_above, left_of, solve_best};
 use super::noise::Whiteness;
 use super::recording::Recording;
@@ -19,15 +22,6 @@ pub const BANDWIDTH_HZ: f64 = 30.0;
 const EQUATIONS_MIN: usize = 3;
 /// A model that leaves less than this share of the force is good enough.
 const SUSPECT: f64 = 0.1;
-
-/// A figure with its standard error.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Figure {
-    /// The estimate.
-    pub value: f64,
-    /// Its standard error.
-    pub std: f64,
-}
 
 /// A rigid axis; N·m and kg·m² for N and kg where it turns.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,9 +53,16 @@ pub struct Rigid {
     pub whiteness: Whiteness,
     /// Whether it resonates within the band, so that no mass alone describes it.
     pub resonates: bool,
+    /// Whether the motion slides or turns: units of what has to do with places.
+    pub motion: Kind,
+    /// Forces that no mass and friction have, estimated together with them.
+    pub effects: Vec<Effect>,
+    /// Whether the force ends at a value.
+    pub saturation: Option<Saturation>,
     /// Unknowns in the order of the terms, for [`predict_error`].
     theta: Vec<f64>,
     terms: Terms,
+    shapes: Vec<Shape>,
 }
 
 impl Rigid {
@@ -149,12 +150,14 @@ pub fn fit_all(
     };
     enough(&all, least)?;
     let solved = solve_best(&mut all, friction).ok_or_else(not_excited)?;
-    let samples = enough(&all, solved.terms)?;
+    let found = effects::found(&all, friction, &solved);
+    let solved = &found.solved;
+    let samples = enough(&found.all, solved.terms)?;
     let mass_std = solved.covariance[(0, 0)].sqrt();
     if !mass_std.is_finite() {
         return Err(not_excited());
     }
-    Ok(described(&all, solved, samples, bandwidth_hz))
+    Ok(described(found, samples, bandwidth_hz))
 }
 
 fn not_excited() -> Trouble {
@@ -175,11 +178,12 @@ fn combined(solved: &Solved, weights: &[f64]) -> Figure {
     }
 }
 
-fn described(all: &[Equations], solved: Solved, samples: usize, bandwidth_hz: f64) -> Rigid {
+fn described(found: Found, samples: usize, bandwidth_hz: f64) -> Rigid {
+    let (all, solved) = (&found.all[..], &found.solved);
     let single = |index: usize| {
         let mut weights = vec![0.0; index];
         weights.push(1.0);
-        combined(&solved, &weights)
+        combined(solved, &weights)
     };
     let terms = solved.terms;
     let (mut viscous, mut coulomb, mut offset) = (None, None, None);
@@ -194,14 +198,14 @@ fn described(all: &[Equations], solved: Solved, samples: usize, bandwidth_hz: f6
         Terms::OneWay => (viscous, constant) = (Some(single(1)), Some(single(2))),
         Terms::Constant => constant = Some(single(1)),
         Terms::Directional => {
-            viscous = Some(combined(&solved, &[0.0, 0.5, 0.5]));
-            coulomb = Some(combined(&solved, &[0.0, 0.0, 0.0, 0.5, 0.5]));
-            offset = Some(combined(&solved, &[0.0, 0.0, 0.0, 0.5, -0.5]));
+            viscous = Some(combined(solved, &[0.0, 0.5, 0.5]));
+            coulomb = Some(combined(solved, &[0.0, 0.0, 0.0, 0.5, 0.5]));
+            offset = Some(combined(solved, &[0.0, 0.0, 0.0, 0.5, -0.5]));
             directions = Some([(single(1), single(3)), (single(2), single(4))]);
         }
     }
     let mass = single(0);
-    let theta = solved.theta;
+    let theta = solved.theta.clone();
     let [rest, total] = sums(all, terms, &theta);
     let above: f64 = all.iter().map(|it| left_above(it, terms, &theta)).sum();
     let rel_error = (rest / total).sqrt();
@@ -229,8 +233,12 @@ fn described(all: &[Equations], solved: Solved, samples: usize, bandwidth_hz: f6
         bandwidth_hz,
         whiteness: Whiteness::of(&left, 20.min(samples / 5)),
         resonates: rel_error > SUSPECT && all.iter().any(is_flexible),
+        motion: all.first().map_or(Kind::Linear, |it| it.raw.motion),
+        effects: found.effects,
+        saturation: found.saturation,
         theta,
         terms,
+        shapes: found.shapes,
     }
 }
 
@@ -264,6 +272,18 @@ pub fn predict_error(rigid: &Rigid, other: &Recording) -> Outcome<f64> {
         }
         equations.leave_out(forward < backward);
     }
-    let [left, all] = left_of(&equations, rigid.terms, &rigid.theta);
+    let theta = effects::add_known(
+        &mut equations,
+        rigid.terms,
+        &rigid.theta,
+        (&rigid.shapes, rigid.recordings),
+    );
+    let theta = theta.ok_or_else(|| {
+        Trouble::new(
+            "the second recording does not go through a period of the cogging",
+            "record as much motion as in the first",
+        )
+    })?;
+    let [left, all] = left_of(&equations, rigid.terms, &theta);
     Ok((left / all).sqrt())
 }

@@ -73,7 +73,7 @@ impl Known {
             let share = root.omega_rad_s.std / root.omega_rad_s.value;
             (factor, if share.is_finite() { share } else { 0.0 })
         });
-        let value = |figure: Option<crate::rigid::Figure>| {
+        let value = |figure: Option<crate::figure::Figure>| {
             figure.map_or(0.0, |figure| figure.value.max(0.0))
         };
         Self {

@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 
 use super::dip::{Dip, dips};
 use crate::column::{Kind, Quantity};
+use crate::figure::Figure;
 use crate::filter::{derivative, low_pass, second_derivative};
 use crate::flexible::{Choice, Flexible, Root, identify};
 use crate::judgement::{self, Judgement};
 use crate::recording::Recording;
-use crate::rigid::Figure;
 use crate::spectrum::FrequencyResponse;
 use crate::transfer::{Factor, TransferFunction};
 use crate::trouble::{Outcome, Trouble};

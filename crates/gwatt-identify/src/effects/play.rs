@@ -1,0 +1,112 @@
+//! A load that a motor moves through a play: it is pushed at either end of the play, and
+//! coasts between them, until friction stops it.
+
+use super::super::equations::{Raw, sign};
+
+/// A play, and what brakes a load within it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Play {
+    /// From end to end, m (rad).
+    pub width: f64,
+    /// Coulomb friction by mass, m/s².
+    pub coulomb: f64,
+    /// Viscous friction by mass, 1/s.
+    pub viscous: f64,
+}
+
+/// Where the load is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum At {
+    /// Pushed forward (1) or backward (−1).
+    End(f64),
+    /// Between the ends, so far from where the motor is.
+    Between(f64),
+}
+
+impl Play {
+    /// How the load's acceleration, and its friction by mass, differ from those that it had
+    /// if it went with the motor. `None` where the speed is not known.
+    pub fn differences(self, raw: &Raw) -> Option<[Vec<f64>; 2]> {
+        let velocity = raw.velocity.as_ref()?;
+        let friction = |v: f64| self.coulomb * sign(v) + self.viscous * v;
+        let t = raw.period_s;
+        let mut load_speed = velocity.first().copied().unwrap_or_default();
+        let mut at = At::End(if load_speed < 0.0 { -1.0 } else { 1.0 });
+        let mut out = [Vec::new(), Vec::new()];
+        let [accelerations, rubbing] = &mut out;
+        for (v, a) in velocity.iter().zip(&raw.acceleration) {
+            let before = load_speed;
+            let apart = match at {
+                At::End(side) if (a + friction(*v)) * side >= 0.0 => {
+                    load_speed = *v;
+                    accelerations.push(0.0);
+                    rubbing.push(0.0);
+                    continue;
+                }
+                At::End(side) => 0.5 * self.width * side,
+                At::Between(apart) => apart,
+            };
+            load_speed = self.coasted(load_speed, t);
+            let apart = apart + t * (v - load_speed);
+            at = if apart.abs() < 0.5 * self.width {
+                At::Between(apart)
+            } else {
+                load_speed = *v;
+                At::End(sign(apart))
+            };
+            accelerations.push((load_speed - before) / t - a);
+            rubbing.push(friction(load_speed) - friction(*v));
+        }
+        Some(out)
+    }
+
+    /// The speed of a load that coasts a while: friction stops it, and no more.
+    fn coasted(self, v: f64, t: f64) -> f64 {
+        let slower = v.abs() - t * (self.coulomb + self.viscous * v.abs());
+        sign(v) * slower.max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::column::Kind;
+    use super::*;
+
+    /// A motor that stops at once and goes back, 1 m/s every 0.1 s; the load coasts through
+    /// 0.25 m without friction, is stopped at the other end, and goes back with the motor.
+    #[test]
+    fn a_load_coasts_until_it_is_caught() {
+        let velocity = [1.0, 1.0, 0.0, -1.0, -1.0, -1.0];
+        let raw = Raw {
+            force: vec![0.0; 6],
+            acceleration: vec![0.0, 0.0, -10.0, -10.0, 0.0, 0.0],
+            velocity: Some(velocity.to_vec()),
+            position: None,
+            period_s: 0.1,
+            motion: Kind::Linear,
+            cut_off: None,
+        };
+        let play = Play {
+            width: 0.25,
+            coulomb: 0.0,
+            viscous: 0.0,
+        };
+        let [accelerations, _] = play.differences(&raw).unwrap();
+        // 0.125 − 0.1 apart, then 0.025 − 0.2: the load has gone from 1 to −1 m/s.
+        for (found, expected) in accelerations.iter().zip([0.0, 0.0, 10.0, -10.0, 0.0, 0.0]) {
+            assert!((found - expected).abs() < 1e-9, "{accelerations:?}");
+        }
+        // Friction of 4 m/s² stops it in three steps; viscous friction of 2/s by a fifth.
+        let braked = Play {
+            coulomb: 4.0,
+            ..play
+        };
+        assert!((braked.coasted(-1.0, 0.1) + 0.6).abs() < 1e-12);
+        assert_eq!(braked.coasted(0.3, 0.1), 0.0);
+        let viscous = Play {
+            viscous: 2.0,
+            ..play
+        };
+        assert!((viscous.coasted(1.0, 0.1) - 0.8).abs() < 1e-12);
+    }
+}

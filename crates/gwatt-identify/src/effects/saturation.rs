@@ -1,0 +1,133 @@
+//! Forces that end at a largest value: in the recording, or in the drive alone.
+
+use super::super::equations::{Equations, sign};
+use super::super::friction::{Friction, Solved, solve_best};
+use super::effect::Saturation;
+use super::search::left_share;
+
+/// Limits that are tried, as shares of the samples below them.
+const BELOW: [f64; 14] = [
+    0.3, 0.4, 0.5, 0.6, 0.65, 0.7, 0.75, 0.8, 0.84, 0.88, 0.92, 0.95, 0.97, 0.985,
+];
+/// By which factor the error falls at least where there is a limit.
+const BETTER: f64 = 0.6;
+/// Rounds of a finer search, each between half of the distance.
+const ROUNDS: usize = 5;
+/// What is missing at the limit is so many standard errors, and such a share of the limit, at
+/// least: then the motion shows more than was recorded.
+const SURE: f64 = 4.0;
+const MISSING: f64 = 0.03;
+
+/// The force with all that is above a limit cut off.
+fn clamped(force: &[f64], limit: f64) -> Vec<f64> {
+    force.iter().map(|f| f.clamp(-limit, limit)).collect()
+}
+
+/// What is left of the force by a limit.
+fn error(
+    all: &[Equations],
+    asked: Option<Friction>,
+    limit: f64,
+) -> Option<(f64, Solved, Vec<Equations>)> {
+    let mut with = all.to_vec();
+    for equations in &mut with {
+        let force = clamped(&equations.raw.force, limit);
+        equations.replace_force(force);
+    }
+    let solved = solve_best(&mut with, asked)?;
+    Some((left_share(&with, &solved), solved, with))
+}
+
+/// A value at which the recorded force stands, and what the motion says of it.
+pub fn cut_off(all: &[Equations], asked: Option<Friction>) -> Option<Saturation> {
+    let cut_off = all.iter().filter_map(|equations| equations.raw.cut_off);
+    let found = cut_off.max_by(|a, b| a.share.total_cmp(&b.share))?;
+    let (limit, share) = (found.level.abs(), found.share);
+    Some(if shows_more(all, asked) {
+        Saturation::Recording { limit, share }
+    } else {
+        Saturation::Drive { limit, share }
+    })
+}
+
+/// Whether the motion shows more force than was recorded where the recording stands at its
+/// largest value.
+fn shows_more(all: &[Equations], asked: Option<Friction>) -> bool {
+    let mut with = all.to_vec();
+    let mut limit: f64 = 0.0;
+    for equations in &mut with {
+        let Some(cut_off) = equations.raw.cut_off else {
+            equations.add(&[Vec::new()]);
+            continue;
+        };
+        limit = limit.max(cut_off.level.abs());
+        let (low, high) = ends(&equations.raw.force);
+        let at_end = |f: &f64| {
+            let stands = *f >= high || *f <= low;
+            if stands { sign(*f) } else { 0.0 }
+        };
+        let column = equations.raw.force.iter().map(at_end).collect();
+        equations.add(&[column]);
+    }
+    let Some(solved) = solve_best(&mut with, asked) else {
+        return true;
+    };
+    let last = solved.theta.len() - 1;
+    let missing = -solved.theta.last().copied().unwrap_or_default();
+    let std = solved.covariance[(last, last)].max(0.0).sqrt();
+    missing > SURE * std && missing > MISSING * limit
+}
+
+fn ends(x: &[f64]) -> (f64, f64) {
+    x.iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(*x), high.max(*x))
+        })
+}
+
+/// A limit above which the motion does not follow the recorded force, with the equations of
+/// the force up to it.
+pub fn beyond(
+    all: &[Equations],
+    asked: Option<Friction>,
+    solved: &Solved,
+) -> Option<(Saturation, Solved, Vec<Equations>)> {
+    let now = left_share(all, solved);
+    let mut sizes: Vec<f64> = all
+        .iter()
+        .flat_map(|equations| equations.raw.force.iter().map(|f| f.abs()))
+        .collect();
+    sizes.sort_by(f64::total_cmp);
+    let at = |share: f64| {
+        let index = (share * sizes.len() as f64) as usize;
+        sizes.get(index).copied()
+    };
+    let limits: Vec<f64> = BELOW.iter().filter_map(|share| at(*share)).collect();
+    let rest = |limit: f64| error(all, asked, limit).map_or(f64::INFINITY, |(rest, ..)| rest);
+    let each = limits.iter().map(|limit| (rest(*limit), *limit));
+    let (mut least, mut best) = each.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    if least > 0.5 * (1.0 + BETTER) * now {
+        return None;
+    }
+    let near = limits.windows(2).map(|pair| match pair {
+        [a, b] if *a == best || *b == best => b - a,
+        _ => 0.0,
+    });
+    let mut step = near.fold(0.0, f64::max);
+    for _ in 0..ROUNDS {
+        step *= 0.5;
+        for limit in [best - step, best + step] {
+            let rest = rest(limit);
+            if limit > 0.0 && rest < least {
+                (least, best) = (rest, limit);
+            }
+        }
+    }
+    if least > BETTER * now {
+        return None;
+    }
+    let (_, next, with) = error(all, asked, best)?;
+    let above = sizes.iter().filter(|size| **size > best).count();
+    let share = above as f64 / sizes.len().max(1) as f64;
+    Some((Saturation::Beyond { limit: best, share }, next, with))
+}

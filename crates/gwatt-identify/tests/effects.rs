@@ -1,0 +1,229 @@
+//! What an axis has besides mass and friction is named, with its figures, and mass and
+//! friction are right next to it.
+
+use gwatt_identify::effects::{Effect, Saturation};
+use gwatt_identify::rigid::{self, Rigid};
+use gwatt_identify::{Figure, Judgement, Recording, judgement};
+
+use crate::simulated::{Axis, Motion, Random, Sensors, recorded};
+
+const SENSORS: Sensors = Sensors {
+    force: 1.0,
+    step: 1e-6,
+};
+
+fn fitted(axis: &Axis, motion: &Motion) -> Rigid {
+    let force = axis.force(motion);
+    let recording = recorded(&force, &motion.position, SENSORS, &mut Random(5));
+    rigid::fit_all(&[recording], None, None).unwrap()
+}
+
+fn near(figure: Figure, truth: f64, share: f64) {
+    let off = (figure.value - truth).abs();
+    assert!(
+        off < share * truth.abs() && off < 4.0 * figure.std + 1e-3 * truth.abs(),
+        "{figure:?} {truth}"
+    );
+}
+
+fn mass_and_friction(found: &Rigid) {
+    near(found.mass, 80.0, 0.01);
+    near(found.viscous.unwrap(), 300.0, 0.02);
+    near(found.coulomb.unwrap(), 25.0, 0.02);
+}
+
+/// 40 N every 12 mm: found by its place, whatever the motion; small ones are no verdict.
+#[test]
+fn cogging_is_periodic_in_position() {
+    for (seed, amplitude, verdict) in [
+        (1, 40.0, Judgement::Cogging),
+        (2, 40.0, Judgement::Cogging),
+        (3, 6.0, Judgement::Good),
+    ] {
+        let axis = Axis {
+            cogging: Some([0.012, amplitude]),
+            ..Axis::PLAIN
+        };
+        let mut random = Random(seed);
+        for motion in [
+            Motion::sines(16_000, 0.15, &mut random),
+            Motion::strokes(16_000, 0.1, &mut random),
+        ] {
+            let found = fitted(&axis, &motion);
+            mass_and_friction(&found);
+            assert!(!found.resonates);
+            let [
+                Effect::Cogging {
+                    period,
+                    amplitude: size,
+                    ..
+                },
+            ] = found.effects[..]
+            else {
+                panic!("{:?}", found.effects)
+            };
+            near(period, 0.012, 0.001);
+            near(size, amplitude, 0.02);
+            assert_eq!(
+                judgement::rigid(&found),
+                verdict,
+                "{seed} {:?}",
+                found.effects
+            );
+        }
+    }
+}
+
+/// What is periodic in time is none, such as a pump or a fan.
+#[test]
+fn a_force_of_the_time_is_no_cogging() {
+    let motion = Motion::sines(16_000, 0.15, &mut Random(4));
+    let mut force = Axis::PLAIN.force(&motion);
+    for (k, force) in force.iter_mut().enumerate() {
+        *force += 40.0 * libm::sin(0.1 * k as f64);
+    }
+    let recording = recorded(&force, &motion.position, SENSORS, &mut Random(5));
+    let found = rigid::fit_all(&[recording], None, None).unwrap();
+    assert!(found.effects.is_empty(), "{:?}", found.effects);
+    assert_ne!(judgement::rigid(&found), Judgement::Good);
+}
+
+/// Friction of 45 N at breakaway, of 25 N from some 20 mm/s on.
+#[test]
+fn friction_that_falls_is_stribecks() {
+    let axis = Axis {
+        stribeck: Some([20.0, 0.02]),
+        ..Axis::PLAIN
+    };
+    let motion = Motion::sines(16_000, 0.1, &mut Random(6));
+    let found = fitted(&axis, &motion);
+    mass_and_friction(&found);
+    let [Effect::Stribeck { rise, speed, .. }] = found.effects[..] else {
+        panic!("{:?}", found.effects)
+    };
+    near(rise, 20.0, 0.05);
+    near(speed, 0.02, 0.05);
+}
+
+/// A load of three quarters of the mass in a play of 2 mm.
+#[test]
+fn force_that_is_missing_after_reversals_is_backlash() {
+    let axis = Axis {
+        backlash: Some([0.002, 0.75]),
+        ..Axis::PLAIN
+    };
+    let mut random = Random(7);
+    for motion in [
+        Motion::sines(16_000, 0.15, &mut random),
+        Motion::strokes(16_000, 0.1, &mut random),
+    ] {
+        let found = fitted(&axis, &motion);
+        let [Effect::Backlash { width, mass, .. }] = found.effects[..] else {
+            panic!("{:?}", found.effects)
+        };
+        assert!((width.value - 0.002).abs() < 0.0006, "{width:?}");
+        assert!((mass.value - 60.0).abs() < 20.0, "{mass:?}");
+        assert_eq!(judgement::rigid(&found), Judgement::Backlash);
+    }
+}
+
+fn clipped(force: &[f64], limit: f64) -> Vec<f64> {
+    force.iter().map(|f| f.clamp(-limit, limit)).collect()
+}
+
+/// The force ends at 100 N: in the recording alone, in the drive alone, or in both.
+#[test]
+fn a_force_that_ends_is_saturated() {
+    let motion = Motion::sines(16_000, 0.15, &mut Random(8));
+    let free = Axis::PLAIN.force(&motion);
+    let limit = 100.0;
+    let noise = Sensors {
+        force: 0.0,
+        ..SENSORS
+    };
+    let fit = |recording: Recording| rigid::fit_all(&[recording], None, None).unwrap();
+    let cut = recorded(
+        &clipped(&free, limit),
+        &motion.position,
+        noise,
+        &mut Random(1),
+    );
+    let found = fit(cut);
+    let Some(Saturation::Recording { limit: at, share }) = found.saturation else {
+        panic!("{:?}", found.saturation)
+    };
+    assert_eq!(at, limit);
+    let above = free.iter().filter(|f| f.abs() >= limit).count() as f64 / 16_000.0;
+    assert!((share - above).abs() < 0.01, "{share} {above}");
+    assert_eq!(judgement::rigid(&found), Judgement::Saturated);
+
+    // A drive that gives no more than 100 N, and a motion that follows from that.
+    let wanted: Vec<f64> = free.iter().map(|f| 1.3 * f).collect();
+    let given = clipped(&wanted, limit);
+    let position = Axis::PLAIN.moved_by(&given);
+    let found = fit(recorded(&given, &position, noise, &mut Random(1)));
+    assert!(
+        matches!(found.saturation, Some(Saturation::Drive { limit: at, .. }) if at == limit),
+        "{:?}",
+        found.saturation
+    );
+    near(found.mass, 80.0, 0.01);
+    let found = fit(recorded(&wanted, &position, SENSORS, &mut Random(1)));
+    let Some(Saturation::Beyond { limit: at, .. }) = found.saturation else {
+        panic!("{:?}", found.saturation)
+    };
+    assert!((at - limit).abs() < 2.0, "{at}");
+    near(found.mass, 80.0, 0.02);
+    assert_eq!(judgement::rigid(&found), Judgement::Saturated);
+}
+
+/// Nothing is found where nothing is: friction, noise, motions of all kinds.
+#[test]
+fn a_plain_axis_has_no_effects() {
+    for seed in 0..20 {
+        let mut random = Random(seed);
+        let sensors = Sensors {
+            force: [1.0, 10.0, 40.0][seed as usize % 3],
+            step: [1e-7, 1e-6, 1e-5][seed as usize / 3 % 3],
+        };
+        for motion in [
+            Motion::sines(12_000, 0.15, &mut random),
+            Motion::strokes(12_000, 0.1, &mut random),
+        ] {
+            let force = Axis::PLAIN.force(&motion);
+            let recording = recorded(&force, &motion.position, sensors, &mut random);
+            let found = rigid::fit_all(&[recording], None, None).unwrap();
+            assert!(found.effects.is_empty(), "{seed} {:?}", found.effects);
+            assert_eq!(found.saturation, None, "{seed}");
+        }
+    }
+}
+
+/// A second recording is predicted with the cogging of the first, wherever its positions
+/// count from; several are joined.
+#[test]
+fn positions_may_count_from_elsewhere() {
+    let axis = Axis {
+        cogging: Some([0.012, 40.0]),
+        ..Axis::PLAIN
+    };
+    let mut random = Random(9);
+    let recordings: Vec<Recording> = [0.0, 0.0047, 0.1]
+        .into_iter()
+        .map(|shift| {
+            let motion = Motion::sines(12_000, 0.15, &mut random);
+            let force = axis.force(&motion);
+            let position: Vec<f64> = motion.position.iter().map(|x| x + shift).collect();
+            recorded(&force, &position, SENSORS, &mut random)
+        })
+        .collect();
+    let found = rigid::fit_all(&recordings[..1], None, None).unwrap();
+    let error = rigid::predict_error(&found, &recordings[1]).unwrap();
+    assert!(error < 0.02, "{error}");
+    let all = rigid::fit_all(&recordings, None, None).unwrap();
+    mass_and_friction(&all);
+    let [Effect::Cogging { amplitude, .. }] = all.effects[..] else {
+        panic!("{:?}", all.effects)
+    };
+    near(amplitude, 40.0, 0.01);
+}

@@ -1,0 +1,5 @@
+//! Identification from the outside: simulated axes of which all is known.
+
+mod effects;
+mod sweep;
+mod simulated;
