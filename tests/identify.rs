@@ -67,7 +67,7 @@ fn sum(p: &[f64], factor: f64, q: &[f64]) -> Vec<f64> {
 }
 
 /// Motor, table and side masses, one after the other on springs: the motor
-/// drives the table through (`k`, `c`), each side mass hangs on the table. From
+/// drives the table through (`k`, `c`), each side mass is connected to the table. From
 /// torque to the table's acceleration.
 pub(crate) fn branched(
     motor: f64,

@@ -43,8 +43,8 @@ const OF_SHAPES: [&str; 9] = [
 pub struct ExciteArgs {
     /// What to make
     ///
-    /// An M-sequence tells an axis that nothing is known of. An anti-resonance
-    /// that is roughly known is told most precisely by a random signal that ends
+    /// An M-sequence shows an axis that nothing is known of. An anti-resonance
+    /// that is roughly known is found most precisely by a random signal that ends
     /// a tenth above it: noise counts least where little else moves.
     #[arg(long, value_enum, default_value_t = ShapeArg::MSequence)]
     pub shape: ShapeArg,
@@ -77,14 +77,14 @@ pub struct ExciteArgs {
     pub order: Option<u32>,
     /// M-sequence: samples that each step is held
     ///
-    /// One and a half periods of an anti-resonance that is roughly known tell it
+    /// One and a half periods of an anti-resonance that is roughly known show it
     /// and the inertia most precisely: 37 at 1 kHz for 40 Hz.
     #[arg(long, default_value_t = 1)]
     pub hold: usize,
     /// M-sequence: how often it is repeated
     #[arg(long, default_value_t = 1)]
     pub repeat: usize,
-    /// What is to be told apart, Hz: sets the length
+    /// What is to be distinguished, Hz: sets the length
     #[arg(long)]
     pub resolution_hz: Option<f64>,
     /// Sweeps and random: lowest frequency

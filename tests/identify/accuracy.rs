@@ -36,13 +36,13 @@ fn errors_are_as_small_as_the_noise_allows() {
                 sum += (error / std) * (error / std);
             }
         }
-        // χ² by its degrees of freedom; figures of one seed hang together a little.
+        // χ² by its degrees of freedom; figures of one seed are correlated a little.
         let mean = sum / (seeds as f64 * least.len() as f64);
         assert!((0.3..2.2).contains(&mean), "{mean}");
     }
 }
 
-/// Beyond the band of the excitation fast modes, delays and lags are hard to tell
+/// Beyond the band of the excitation fast modes, delays and lags are hard to find
 /// apart: none of them may take a part of the damping of what shows.
 #[test]
 fn what_lies_beyond_the_band_does_not_move_the_zero() {
@@ -104,7 +104,7 @@ fn a_thousand_seeds_are_as_accurate_as_promised() {
         }
         // 200 seeds scatter by 3 about the 95.4 % that normal errors have: of the first
         // 200 of these, 198 are inside for the second zero's frequency even where the
-        // model is known and only linearised. A thousand tell.
+        // model is known and only linearised. A thousand are enough.
         for count in inside {
             assert!(
                 (930..=970).contains(&count),

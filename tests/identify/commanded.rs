@@ -90,23 +90,23 @@ fn loads_are_as_late_as_they_are_and_dead_time_says_how_far_it_is_known() {
     ] {
         let axis = loops(delay_s);
         let found = found(&axis, measured, noise, seed);
-        let told = format!(
+        let shown = format!(
             "{measured} {delay_s} {:?} {:?}",
             found.delay_s, found.transfer
         );
         let late_s = lateness_s(&found.transfer) - lateness_s(&axis);
-        assert!(late_s.abs() < 1e-4, "{late_s} {told}");
-        assert_eq!(found.zeros.len(), 1, "{told}");
+        assert!(late_s.abs() < 1e-4, "{late_s} {shown}");
+        assert_eq!(found.zeros.len(), 1, "{shown}");
         let zero = found.zeros[0].omega_rad_s;
-        assert!((zero.value - TAU * 40.0).abs() < 4.0 * zero.std, "{told}");
+        assert!((zero.value - TAU * 40.0).abs() < 4.0 * zero.std, "{shown}");
         let off_s = (found.delay_s.value - delay_s).abs();
-        assert!(off_s < 2.0 * found.delay_s.std, "{told}");
-        assert!(found.delay_s.std < 2.5 * PERIOD_S, "{told}");
+        assert!(off_s < 2.0 * found.delay_s.std, "{shown}");
+        assert!(found.delay_s.std < 2.5 * PERIOD_S, "{shown}");
     }
 }
 
 /// What a loop does beyond the band may look like a zero: one of which the recording
-/// does not tell whether it is there is no anti-resonance, and the verdict says that
+/// does not show whether it is there is no anti-resonance, and the verdict says that
 /// something is not known.
 #[test]
 fn a_zero_that_is_not_known_does_not_count() {

@@ -72,7 +72,7 @@ fn noise_of_positions_and_speeds_is_white() {
                 count += 1.0;
             }
         }
-        // χ² by its degrees of freedom; figures of one seed hang together a little.
+        // χ² by its degrees of freedom; figures of one seed are correlated a little.
         let mean = sum / count;
         assert!((0.3..2.2).contains(&mean), "{measured:?} {mean}");
     }
@@ -109,7 +109,7 @@ fn no_mode_stands_for_a_slow_disturbance() {
     }
 }
 
-/// A part of a period of delay is told as that, not by lags that do nearly the same.
+/// A part of a period of delay is found as that, not by lags that do nearly the same.
 #[test]
 fn a_part_of_a_period_of_delay_is_found_behind_coloured_noise() {
     let pair = |hz: f64, damping| Factor::Pair {

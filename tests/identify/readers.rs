@@ -1,4 +1,4 @@
-//! Reading of recordings and logs: whatever the bytes, a refusal tells what to do.
+//! Reading of recordings and logs: whatever the bytes, a refusal says what to do.
 
 use gwatt::identify::Recording;
 use gwatt::identify::power_fit::PowerLog;

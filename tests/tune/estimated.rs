@@ -39,7 +39,7 @@ fn estimated_zeros_make_axes_alike() {
         let before = true_mismatch([&a.0, &b.0], None);
         let after = true_mismatch([&a.0, &b.0], Some(&tuned.correction));
         assert!(before[0] > 20.0 && before[1] > 150.0, "{before:?}");
-        // Three standard errors: two are what is told.
+        // Three standard errors: two are what is reported.
         let error = tuned.pairs[0].error;
         assert!(
             after[0] < 1.5 * error.gain_db && after[1] < 1.5 * error.phase_deg,

@@ -37,7 +37,7 @@ fn script(name: &str) -> PathBuf {
         .join(name)
 }
 
-/// What a script has found: curves were drawn anew, what the page saves gwatt
+/// What a script has found: curves were drawn again, what the page saves gwatt
 /// reads, and what the page computes is what gwatt computes.
 fn check(found: &Value) {
     assert_eq!(found["broken"], 0);

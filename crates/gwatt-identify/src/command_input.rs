@@ -81,10 +81,10 @@ fn spline(x: &[f64]) -> Vec<f64> {
         before = *slot + root * before;
         *slot = before;
     }
-    let mut behind = out.last().map_or(0.0, |x| x / (1.0 - root));
+    let mut after = out.last().map_or(0.0, |x| x / (1.0 - root));
     for slot in out.iter_mut().rev() {
-        behind = *slot + root * behind;
-        *slot = -6.0 * root * behind;
+        after = *slot + root * after;
+        *slot = -6.0 * root * after;
     }
     out
 }

@@ -46,7 +46,7 @@ pub struct Signals {
 impl Signals {
     /// Those of `data` after `filter`.
     #[must_use]
-    pub fn behind(data: &Data<'_>, filter: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+    pub fn filtered(data: &Data<'_>, filter: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         Self {
             input: filter(data.input),
             friction: data.friction.iter().map(|x| filter(x)).collect(),

@@ -1,4 +1,4 @@
-//! What noise a position or speed was measured with, and what disturbs the axis beside
+//! What noise a position or speed was measured with, and what disturbs the axis next to
 //! it: integrators with the leak after which it is predicted best.
 //!
 //! Noise of the measurement alone needs integrators that hardly leak, disturbances of
@@ -87,14 +87,14 @@ impl Noise {
             .iter()
             .filter_map(|start| refine(&leaky.data(&head), start, false, &[], effort));
         let best = found.min_by(|a, b| a.criterion().total_cmp(&b.criterion()));
-        let noise = best.and_then(|best| Self::beside(&head, &best.transfer, FIRST_MAX, None));
+        let noise = best.and_then(|best| Self::next_to(&head, &best.transfer, FIRST_MAX, None));
         (noise.unwrap_or(first), starts)
     }
 
     /// The noise next to which a model, moved a little, explains plain differences best,
     /// with so many taps at most. `None` when none is clearly better than this one.
     #[must_use]
-    pub fn beside(
+    pub fn next_to(
         data: &Data<'_>,
         transfer: &TransferFunction,
         taps_max: usize,

@@ -78,7 +78,7 @@ pub struct Excitation {
     pub period_s: f64,
     /// Lowest and highest frequency with at least half of the power, Hz.
     pub band_hz: (f64, f64),
-    /// Distance of its frequencies: what can be told apart, Hz.
+    /// Distance of its frequencies: what can be distinguished, Hz.
     pub resolution_hz: f64,
     /// Largest value.
     pub peak: f64,
@@ -260,7 +260,7 @@ fn uniform(state: &mut u64) -> f64 {
 
 /// How far and how fast an axis goes, as a rigid mass without friction: half of
 /// the distance between its ends, and the largest speed; m and m/s, or rad. A
-/// force that is not zero on the average carries it away; that drift is told
+/// force that is not zero on the average carries it away; that drift is reported
 /// apart as the third figure.
 #[must_use]
 pub fn reach(values: &[f64], period_s: f64, mass: f64) -> (f64, f64, f64) {

@@ -1,10 +1,10 @@
-//! Signals of which one of so many samples tells all: a recording that shows nothing
+//! Signals of which one of so many samples shows all: a recording that shows nothing
 //! above some frequency is compared with models on fewer rows.
 //!
 //! Both signals go through the same low-pass, which leaves a model between them as
 //! it is. Its response is the root of a raised cosine: sampled once in so many
 //! periods, what it makes of white noise is white again (Nyquist's criterion), and a
-//! sum of squares by rows tells as much as before.
+//! sum of squares by rows shows as much as before.
 
 use std::f64::consts::PI;
 
@@ -40,7 +40,7 @@ impl FewerRows {
         }
         let taps = low_pass(every);
         Some(Self {
-            signals: Signals::behind(data, |x| behind(x, &taps)),
+            signals: Signals::filtered(data, |x| filtered(x, &taps)),
             every,
         })
     }
@@ -84,7 +84,7 @@ fn low_pass(every: usize) -> Vec<f64> {
 }
 
 /// A signal after a symmetrical filter, where all of it is known.
-fn behind(x: &[f64], taps: &[f64]) -> Vec<f64> {
+fn filtered(x: &[f64], taps: &[f64]) -> Vec<f64> {
     let windows = x.windows(taps.len());
     windows
         .map(|window| window.iter().zip(taps).map(|(x, tap)| x * tap).sum())
@@ -102,8 +102,8 @@ mod tests {
         for every in 2..=EVERY_MAX {
             let taps = low_pass(every);
             for apart in 0..2 * REACH {
-                let behind = taps.iter().skip(apart * every);
-                let sum: f64 = taps.iter().zip(behind).map(|(x, y)| x * y).sum();
+                let later = taps.iter().skip(apart * every);
+                let sum: f64 = taps.iter().zip(later).map(|(x, y)| x * y).sum();
                 let white = if apart == 0 { 1.0 } else { 0.0 };
                 assert!((sum - white).abs() < 0.004, "{every} {apart} {sum}");
             }

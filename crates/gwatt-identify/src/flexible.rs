@@ -42,7 +42,7 @@ pub struct Flexible {
     pub inertia: Option<Figure>,
     /// Anti-resonances: zeros that make a dip.
     pub zeros: Vec<Root>,
-    /// Zeros of which the recording does not tell whether there are any: their
+    /// Zeros of which the recording does not show whether there are any: their
     /// frequency is not known to a tenth. The model has them to explain other things,
     /// such as a delay.
     pub unclear_zeros: Vec<Root>,
@@ -259,8 +259,8 @@ fn share(data: &Data<'_>, left: &[f64]) -> f64 {
     (power(left) / all).sqrt()
 }
 
-/// Up to where zeros and poles are told, rad/s.
-fn told(data: &Data<'_>, response: &FrequencyResponse) -> (f64, f64) {
+/// Up to where zeros and poles are shown, rad/s.
+fn shown_up_to(data: &Data<'_>, response: &FrequencyResponse) -> (f64, f64) {
     let band = std::f64::consts::PI / data.period_s;
     // A zero beyond what the recording shows stands for something else.
     let excited = if data.positions {
@@ -353,7 +353,7 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
             "check that input and motion are of the same axis and the same time",
         ));
     }
-    let bands = told(data, &found.response);
+    let bands = shown_up_to(data, &found.response);
     let [zeros, unclear_zeros, poles] = roots_of(&transfer, bands, std);
     let known = data.undisturbed.unwrap_or(compared.input);
     let missed_share = explained_share(

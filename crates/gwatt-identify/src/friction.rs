@@ -244,7 +244,7 @@ pub(super) fn solve(all: &[Equations], terms: Terms) -> Option<Solved> {
     })
 }
 
-/// Covariance that holds for residuals that hang together over some samples, widened for
+/// Covariance that holds for residuals that are correlated over some samples, widened for
 /// what few equations leave unknown of them.
 fn robust(
     all: &[Equations],
@@ -294,7 +294,7 @@ pub(super) fn moves_one_way(all: &mut [Equations]) -> bool {
 }
 
 /// Solves with the friction that is asked for, or that the data decide on; terms that
-/// the motion does not tell from one another are joined. `None` where it does not even
+/// the motion does not distinguish are joined. `None` where it does not even
 /// determine the mass.
 pub(super) fn solve_best(all: &mut [Equations], asked: Option<Friction>) -> Option<Solved> {
     if all
@@ -395,7 +395,7 @@ mod tests {
         Equations::of_band(band)
     }
 
-    /// What the motion does not tell apart is joined: at ±2 m/s friction is 9 N.
+    /// What the motion does not distinguish is joined: at ±2 m/s friction is 9 N.
     #[test]
     fn terms_that_hang_together_are_one() {
         for (speeds, terms, theta) in [

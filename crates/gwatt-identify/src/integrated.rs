@@ -2,7 +2,7 @@
 //! after one another.
 //!
 //! The models that a search starts from are mostly near to what is sought, though the
-//! noise is known but roughly: next to the best of them it is taken anew, and the search
+//! noise is known but roughly: next to the best of them it is taken again, and the search
 //! goes on after that. What is found may show still other noise, or may have modes that
 //! stand for noise: then the search goes on from there, among neighbours.
 
@@ -12,7 +12,7 @@ use super::any_delay::{Timed, timed};
 use super::data::Data;
 use super::delay_profile::doubt_s;
 use super::disturbance::{Noise, as_it_is};
-use super::ladder::{Anew, Ladder, Reach, STEPS_LAST, best_of};
+use super::ladder::{Ladder, Reach, Restart, STEPS_LAST, best_of};
 use super::neighbours::{Given, simpler};
 use super::noise::predicting;
 use super::output_error::{Effort, Estimate, Fitting, residuals};
@@ -157,7 +157,7 @@ impl Stage<'_> {
         if exact || is_white(&left, &self.noise.taps) {
             return None;
         }
-        Noise::beside(&self.raw, &found.transfer, WHITENING_MAX, Some(self.noise))
+        Noise::next_to(&self.raw, &found.transfer, WHITENING_MAX, Some(self.noise))
     }
 
     /// The same noise with taps that suit the model that was found, where those next to the
@@ -196,7 +196,7 @@ impl Stage<'_> {
             Some(self.timed(&self.fitting, found).found)
         });
         let with_noise = |less: Estimate| {
-            let noise = Noise::beside(raw, &less.transfer, WHITENING_MAX, None)?;
+            let noise = Noise::next_to(raw, &less.transfer, WHITENING_MAX, None)?;
             let (criterion, less) = noise.with(raw, &less.transfer)?;
             Some((criterion, noise, less.transfer))
         };
@@ -230,15 +230,15 @@ impl Stage<'_> {
 
 /// How far the first search goes, or a later one from what it found.
 fn reach(is_first: bool) -> Reach {
-    let (steps, anew) = if is_first {
-        (STEPS, Anew::Behind)
+    let (steps, restart) = if is_first {
+        (STEPS, Restart::WhereStuck)
     } else {
-        (STEPS_LAST, Anew::Unless)
+        (STEPS_LAST, Restart::Unless)
     };
     Reach {
         steps,
         spare: steps,
-        anew,
+        restart,
     }
 }
 

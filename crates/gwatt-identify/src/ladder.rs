@@ -51,14 +51,14 @@ fn is_of_kind(a: &TransferFunction, b: &TransferFunction) -> bool {
     a.delay_s == b.delay_s && are_near(&a.zeros, &b.zeros) && are_near(&a.poles, &b.poles)
 }
 
-/// When a search places modes anew.
+/// When a search places modes again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Anew {
+pub enum Restart {
     /// At first: where the first model is taken from, what shows is mostly right, and
     /// the rest not.
     First,
     /// Where no neighbour is better.
-    Behind,
+    WhereStuck,
     /// Not for a model that was searched for before, unless a neighbour is better.
     Unless,
 }
@@ -70,8 +70,8 @@ pub struct Reach {
     pub steps: usize,
     /// Steps to spare for what comes next, to leave a wrong path.
     pub spare: usize,
-    /// Where what is placed anew is looked at besides neighbours.
-    pub anew: Anew,
+    /// Where what is placed again is looked at besides neighbours.
+    pub restart: Restart,
 }
 
 /// A search from model to model.
@@ -128,8 +128,8 @@ impl Ladder<'_> {
         let Some(mut best) = best.cloned() else {
             return all;
         };
-        let mut is_restarted = reach.anew == Anew::First;
-        let mut idle = usize::from(reach.anew == Anew::Unless);
+        let mut is_restarted = reach.restart == Restart::First;
+        let mut idle = usize::from(reach.restart == Restart::Unless);
         let mut tried = vec![best.transfer.clone()];
         for _ in 0..ROUNDS_MAX {
             let mut top: Option<Estimate> = None;

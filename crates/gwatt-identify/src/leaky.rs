@@ -32,7 +32,7 @@ impl Leaky {
             x
         };
         let mut out = Self {
-            signals: Signals::behind(data, held),
+            signals: Signals::filtered(data, held),
             leak,
         };
         out.level(data);

@@ -365,7 +365,7 @@ fn explained(products: [[f64; 4]; 4], right: [f64; 4]) -> f64 {
             .unwrap_or_default()
     });
     let r = Vector4::from(right);
-    // Columns that hang together say nothing more than one of them.
+    // Columns that are correlated say nothing more than one of them.
     let steep = p + Matrix4::from_diagonal(&(p.diagonal() * 1e-12));
     Cholesky::new(steep).map_or(f64::NAN, |cholesky| r.dot(&cholesky.solve(&r)))
 }

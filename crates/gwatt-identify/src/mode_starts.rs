@@ -1,6 +1,6 @@
 //! Models to start a search from: modes are added one at a time, each where most
 //! is left unexplained, while any delay is allowed; then the delays that go with
-//! these modes are told apart.
+//! these modes are distinguished.
 
 use super::modal::{Late, Modes};
 use super::neighbours::{Given, LAG_MAX, ORDER_MAX};
@@ -15,7 +15,7 @@ const STEPS_BEST: usize = 12;
 /// Delays that are followed to the end: what modes beyond the band make late looks
 /// like a longer one.
 const LAGS: usize = 3;
-/// Models that are handed on.
+/// Models that are passed on.
 const KEPT: usize = 4;
 
 /// The steps of delays that are tried, in periods. A force is held from sample to

@@ -225,7 +225,7 @@ fn lag_pole(period_s: f64) -> Factor {
     }
 }
 
-/// Zeros that swing come from what hangs on the load, and that is damped: where
+/// Zeros that swing come from what is connected to the load, and that is damped: where
 /// they came out undamped, the same ones damped, with less delay.
 fn reflected(from: &TransferFunction, given: Given, period_s: f64) -> Vec<TransferFunction> {
     let mut damped = from.clone();
@@ -360,7 +360,7 @@ fn as_strong(
 }
 
 /// Where no neighbour is better: the slowest of what swings, with one faster mode
-/// placed anew, by the response or well above. Outside the band of the excitation
+/// placed again, by the response or well above. Outside the band of the excitation
 /// a mode may have gone astray.
 #[must_use]
 pub fn restarts(

@@ -44,7 +44,7 @@ fn totals(sums: &[Lanes; 4]) -> [f64; 4] {
 }
 
 /// The sums of products of each of two columns with each of two others, all of one
-/// length. Each value is loaded once for two products, and so many sums run beside
+/// length. Each value is loaded once for two products, and so many sums run next to
 /// one another that none waits for itself.
 fn products(x: [&[f64]; 2], y: [&[f64]; 2]) -> [[f64; 2]; 2] {
     let [(a, a_rest), (b, b_rest)] = x.map(<[f64]>::as_chunks);

@@ -7,7 +7,7 @@
 //! the input which the excitation causes. For white noise on the output this is
 //! the most accurate estimate there is (Young, *Recursive Estimation and
 //! Time-Series Analysis*, 2011, "refined instrumental variables"), and the
-//! inverse of the instruments' products tells its errors. Coloured noise is
+//! inverse of the instruments' products gives its errors. Coloured noise is
 //! made white first, by an autoregressive filter over all signals.
 //!
 //! Besides the parameters an offset and the state at the first sample are
@@ -32,7 +32,7 @@ const ENOUGH: f64 = 1e-3;
 const ENOUGH_INTEGRATED: f64 = 2e-2;
 
 /// Damping of a first step. In positions, most of which is slow, everything but the
-/// gain hangs together: less is much there, and the last fit comes from nearby.
+/// gain is correlated: less is much there, and the last fit comes from nearby.
 const DAMPING: f64 = 1e-4;
 const DAMPING_LEAKY: f64 = 1e-7;
 const DAMPING_LAST: f64 = 1e-12;
@@ -178,7 +178,7 @@ impl<'a> Fitting<'a> {
     #[must_use]
     pub fn new(raw: Data<'a>, taps: &'a [f64]) -> Self {
         Self {
-            signals: (!taps.is_empty()).then(|| Signals::behind(&raw, |x| whitened(x, taps))),
+            signals: (!taps.is_empty()).then(|| Signals::filtered(&raw, |x| whitened(x, taps))),
             power: raw.output.iter().map(|y| y * y).sum(),
             raw,
             taps,

@@ -78,7 +78,7 @@ pub fn is_admissible(transfer: &TransferFunction, period_s: f64) -> bool {
     let nyquist = std::f64::consts::PI / period_s;
     let is_in_range = |omega: f64| omega > 1e-6 / period_s && omega < 20.0 / period_s;
     let sound_pole = |pole: &Factor| match *pole {
-        // What swings faster than half the sampling rate cannot be told from
+        // What swings faster than half the sampling rate cannot be distinguished from
         // its image below.
         Factor::Pair {
             omega_rad_s: w,

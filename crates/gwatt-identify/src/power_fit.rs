@@ -124,7 +124,7 @@ impl<'a> Part<'a> {
 
 fn weak() -> Trouble {
     Trouble::new(
-        "the log does not tell mass and friction apart: there is too little motion",
+        "the log does not distinguish mass and friction: there is too little motion",
         "log rapids and feeds at several speeds, with starts and stops",
     )
 }

@@ -1,4 +1,4 @@
-//! Signals that cannot tell anything: they do not move, or they are cut off.
+//! Signals that cannot show anything: they do not move, or they are cut off.
 
 use super::recording::Signal;
 use super::trouble::{Outcome, Trouble};

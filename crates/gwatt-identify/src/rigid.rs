@@ -162,7 +162,7 @@ pub fn fit_all(
 
 fn not_excited() -> Trouble {
     Trouble::new(
-        "the motion does not tell mass and friction apart: it is not excited enough",
+        "the motion does not distinguish mass and friction: it is not excited enough",
         "move to and fro at several speeds, with accelerations between; gwatt excite makes signals",
     )
 }

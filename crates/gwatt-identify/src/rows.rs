@@ -7,7 +7,7 @@ use std::io::{Chain, Cursor, Read};
 use super::layout::{Layout, number, text_of};
 use super::trouble::{Outcome, Trouble};
 
-/// Bytes at the beginning that tell what a file is.
+/// Bytes at the beginning that show what a file is.
 const BEGINNING: u64 = 1 << 16;
 /// Characters of a cell that are shown.
 const SHOWN: usize = 24;

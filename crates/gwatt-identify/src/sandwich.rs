@@ -1,4 +1,4 @@
-//! Covariance of estimates whose residuals hang together over some samples.
+//! Covariance of estimates whose residuals are correlated over some samples.
 
 use nalgebra::DMatrix;
 
@@ -34,14 +34,14 @@ pub(super) fn sandwich(scores: &[Vec<f64>], inverse: &DMatrix<f64>) -> DMatrix<f
     inverse * middle * inverse
 }
 
-/// Over how many rows residuals of so many hang together.
+/// Over how many rows residuals of so many are correlated.
 fn lags(rows: usize) -> usize {
     (4.0 * libm::pow(rows as f64 / 100.0, 2.0 / 9.0)).max(4.0) as usize
 }
 
 /// By how much variances of few rows are to be widened, so that two standard errors hold
 /// as often as of many: what the covariance itself does not know, by the share of the rows
-/// that hang together (Kiefer & Vogelsang 2005, "A new asymptotic theory for
+/// that are correlated (Kiefer & Vogelsang 2005, "A new asymptotic theory for
 /// heteroskedasticity-autocorrelation robust tests", table 1: Bartlett's kernel, 97.5 %).
 #[must_use]
 pub(super) fn widening(rows: usize) -> f64 {
@@ -54,7 +54,7 @@ pub(super) fn widening(rows: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// 40 rows, of which 5 hang together: 1.96 + 2.9694/8 + 0.416/64 − 0.5324/512 = 2.3366.
+    /// 40 rows, of which 5 are correlated: 1.96 + 2.9694/8 + 0.416/64 − 0.5324/512 = 2.3366.
     #[test]
     fn few_rows_widen_errors() {
         let critical: f64 = 2.336_635;
@@ -72,7 +72,7 @@ mod tests {
         // Products: 4; at distance 1: 1 + 0 + 0 + 1; 2: 0 − 1 + 0; 3: −1 − 1; 4: −1.
         let sum = 4.0 + 2.0 * (0.8 * 2.0 - 0.6 * 1.0 - 0.4 * 2.0 - 0.2 * 1.0);
         assert!((found - sum / 25.0).abs() < 1e-12, "{found}");
-        // In two stretches nothing hangs together across the gap.
+        // In two stretches nothing is correlated across the gap.
         let apart = sandwich(&[vec![1.0], vec![1.0]], &DMatrix::from_element(1, 1, 0.5));
         assert!((apart[(0, 0)] - 0.5).abs() < 1e-12, "{apart}");
     }

@@ -10,7 +10,7 @@ use super::delay_profile::{Bounds, doubt_s, profile};
 use super::disturbance::Noise;
 use super::fewer_rows::FewerRows;
 use super::integrated;
-use super::ladder::{Anew, Ladder, Reach, SEARCH_STEPS, STEPS_LAST, best_of};
+use super::ladder::{Ladder, Reach, Restart, SEARCH_STEPS, STEPS_LAST, best_of};
 use super::mode_starts;
 use super::neighbours::{Given, ONE, cancelled};
 use super::noise::{Whiteness, whitening};
@@ -190,7 +190,7 @@ fn choose(
     best
 }
 
-/// The rows on which models are compared, where they are more than usual and fewer tell
+/// The rows on which models are compared, where they are more than usual and fewer show
 /// as much.
 #[must_use]
 pub fn fewer_rows(rows: &Data<'_>, compared: usize, band_rad_s: f64) -> Option<FewerRows> {
@@ -236,7 +236,7 @@ fn reach(is_first: bool, from_command: bool) -> Reach {
     Reach {
         steps,
         spare,
-        anew: Anew::First,
+        restart: Restart::First,
     }
 }
 

@@ -28,7 +28,7 @@ pub struct FrequencyResponse {
 
 impl FrequencyResponse {
     /// Up to where the input explains most of the output, rad/s: beyond, a
-    /// recording tells nothing but what fast modes make of slow motion.
+    /// recording shows nothing but what fast modes make of slow motion.
     #[must_use]
     pub fn band_rad_s(&self) -> f64 {
         self.explained_rad_s(0.5)

@@ -137,7 +137,7 @@ impl TransferFunction {
         multiply(vec![1.0], &self.poles)
     }
 
-    /// By how much it makes slow signals late, s: what a recording tells of it,
+    /// By how much it makes slow signals late, s: what a recording shows of it,
     /// whatever fast poles, zeros and delay make of that.
     #[must_use]
     pub fn lag_s(&self) -> f64 {

@@ -115,7 +115,7 @@ impl Foreseen {
         let leaky = (known.noise.leak > 0.0).then(|| Leaky::of(&data, known.noise.leak));
         let held = leaky.as_ref().map_or(data, |leaky| leaky.data(&data));
         let taps = &known.noise.taps;
-        let signals = Signals::behind(&held, |x| whitened(x, taps));
+        let signals = Signals::filtered(&held, |x| whitened(x, taps));
         let white = signals.data(&held);
         let is_late = known.transfer.delay_s > 0.0;
         let normal = gather(&white, &known.transfer, is_late, taps.len() + data.skip())?;

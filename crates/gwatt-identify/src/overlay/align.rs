@@ -413,7 +413,7 @@ mod tests {
     }
 
     /// A meter that averages over 20 samples shows less of short peaks: so does the prediction
-    /// that it is held against.
+    /// that it is compared with.
     #[test]
     fn what_the_meter_averages_over_is_found() {
         let curve = program(5, 60);

@@ -67,7 +67,7 @@ struct AxisTable {
     further_zeros: Vec<FactorTable>,
     #[serde(default)]
     poles: Vec<FactorTable>,
-    /// The filter as it was: designed anew.
+    /// The filter as it was: designed again.
     #[serde(default)]
     #[allow(dead_code, reason = "the file may have it")]
     filter: Vec<[f64; 5]>,
