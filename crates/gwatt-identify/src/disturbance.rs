@@ -5,14 +5,15 @@
 //! the force plain differences; where both are, it is in between, and an
 //! autoregressive filter makes the rest white.
 
+use super::chosen::{COARSE, LAGS};
 use super::data::Data;
 use super::ladder::SEARCH_STEPS;
 use super::leaky::Leaky;
+use super::measured_noise::Noise;
 use super::mode_starts;
 use super::neighbours::Given;
 use super::noise::{Whiteness, predicting};
 use super::output_error::{Effort, Estimate, refine, residuals};
-use super::search::{COARSE, LAGS};
 use super::spectral_lines::Lines;
 use super::transfer::TransferFunction;
 
@@ -34,16 +35,6 @@ const EFFORT: Effort = Effort {
     steps: 4,
     to_beat: f64::MAX,
 };
-
-/// A model of noise.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Noise {
-    /// Leak of the integrators that go with it; 0 without them.
-    pub leak: f64,
-    /// Taps of the filter that makes white what is left after them, without the
-    /// leading 1.
-    pub taps: Vec<f64>,
-}
 
 /// The model as it is, with its offset and first state.
 #[must_use]

@@ -3,10 +3,12 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::arx;
+use super::chosen::{LAGS, filtered};
 use super::data::Data;
-use super::disturbance::{Noise, as_it_is};
+use super::disturbance::as_it_is;
 use super::figure::Figure;
 use super::leaky::Leaky;
+use super::measured_noise::Noise;
 use super::methods::{Modelled, by_arx, by_response, by_search, by_subspace};
 use super::neighbours::FAST;
 use super::noise::Whiteness;
@@ -15,7 +17,6 @@ use super::parameters::parameters;
 use super::prepared::{Prepared, prepare};
 use super::recording::Recording;
 use super::rubbing::{Rubbing, Term};
-use super::search::{LAGS, filtered};
 use super::spectrum::{FrequencyResponse, excited_rad_s, explained_share};
 use super::state_space::Measured;
 use super::transfer::{Factor, TransferFunction};

@@ -2,13 +2,15 @@
 
 use super::arx;
 use super::choice::Choice;
+use super::chosen::CHOSEN;
 use super::data::Data;
-use super::disturbance::{Noise, as_it_is};
+use super::disturbance::as_it_is;
+use super::measured_noise::Noise;
 use super::neighbours::{LAG_MAX, ORDER_MAX};
 use super::output_error::Estimate;
 use super::prepared::Prepared;
 use super::response_fit;
-use super::search::{CHOSEN, response_of, search};
+use super::search::{response_of, search};
 use super::spectrum::FrequencyResponse;
 use super::subspace::{Subspace, with_poles};
 use super::transfer::TransferFunction;

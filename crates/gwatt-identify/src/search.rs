@@ -2,32 +2,27 @@
 //! their neighbours, and the one that Bayes' criterion prefers; after a command the
 //! dead time by its profile.
 
+use super::chosen::{
+    CHOSEN, COARSE, COMPARED, Chosen, WHITENING_MAX, fewer_rows, filtered, is_white,
+};
 use nalgebra::Complex;
 
 use super::any_delay::{Timed, any_delay};
 use super::data::Data;
 use super::delay_profile::{Bounds, doubt_s, profile};
-use super::disturbance::Noise;
-use super::fewer_rows::FewerRows;
 use super::integrated;
 use super::ladder::{Ladder, Reach, Restart, SEARCH_STEPS, STEPS_LAST, best_of};
+use super::measured_noise::Noise;
 use super::mode_starts;
 use super::neighbours::{Given, ONE, cancelled};
-use super::noise::{Whiteness, whitening};
+use super::noise::whitening;
 use super::output_error::{Effort, Estimate, Fitting, residuals};
 use super::response_starts;
 use super::spectral_lines::Lines;
 use super::spectrum::{FrequencyResponse, measure};
 use super::transfer::TransferFunction;
 
-/// Samples on which models are compared; of commands more, as a sweep shows each
-/// mode but once, and of forces where the first ones show less than all do.
-pub const COMPARED: usize = 8_000;
 const COMPARED_COMMAND: usize = 16_000;
-/// Samples on which the best of them are; the last fit takes all.
-pub const CHOSEN: usize = 24_000;
-/// Lines on which modes are looked for, about.
-pub const COARSE: usize = 700;
 /// Steps of all of them at most: a recording that no model explains to its last
 /// digit is not worth minutes.
 const STEPS_MAX: usize = 500;
@@ -36,10 +31,6 @@ const STEPS_MAX: usize = 500;
 const STEPS_COMMAND: usize = 50;
 /// Rounds of model and noise.
 const ROUNDS_OF_NOISE: usize = 4;
-/// Order of the filter that makes noise white, at most.
-pub const WHITENING_MAX: usize = 40;
-/// Lags over which residuals are tested.
-pub const LAGS: usize = 40;
 
 /// A model with how it was found.
 #[derive(Debug, Clone)]
@@ -74,18 +65,6 @@ pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Opti
         noise,
         response,
     })
-}
-
-/// A model that was chosen on some of the samples.
-pub struct Chosen {
-    /// The model.
-    pub found: Estimate,
-    /// Whether the delay was fitted.
-    pub delay_is_free: bool,
-    /// How far it is in doubt besides, s.
-    pub delay_doubt_s: f64,
-    /// What made the noise white.
-    pub noise: Noise,
 }
 
 fn choose(
@@ -188,21 +167,6 @@ fn choose(
         noise.taps = whitening(&left, WHITENING_MAX);
     }
     best
-}
-
-/// The rows on which models are compared, where they are more than usual and fewer show
-/// as much.
-#[must_use]
-pub fn fewer_rows(rows: &Data<'_>, compared: usize, band_rad_s: f64) -> Option<FewerRows> {
-    (compared > COMPARED)
-        .then(|| FewerRows::of(rows, band_rad_s))
-        .flatten()
-}
-
-/// True where a filter makes white what is left.
-#[must_use]
-pub fn is_white(left: &[f64], taps: &[f64]) -> bool {
-    Whiteness::of(&filtered(left, taps), LAGS).is_white()
 }
 
 /// The last fit, on all samples, and the noise that goes with it.
@@ -312,17 +276,4 @@ fn as_held(response: &mut FrequencyResponse, times: usize, period_s: f64) {
             *variance *= early.norm_sqr();
         }
     }
-}
-
-/// A signal after the whitening filter, its beginning left out.
-#[must_use]
-pub fn filtered(x: &[f64], taps: &[f64]) -> Vec<f64> {
-    let order = taps.len();
-    x.windows(order + 1)
-        .map(|window| {
-            let past = window.iter().rev().skip(1);
-            let sum: f64 = past.zip(taps).map(|(x, tap)| x * tap).sum();
-            sum + window.last().copied().unwrap_or_default()
-        })
-        .collect()
 }

@@ -12,7 +12,7 @@ use std::ops::Range;
 use nalgebra::Complex;
 
 use super::data::Data;
-use super::disturbance::Noise;
+use super::measured_noise::Noise;
 use super::neighbours::LAG_MAX;
 use super::parallel::{Hold, Section, TAPS};
 use super::places::thinned;

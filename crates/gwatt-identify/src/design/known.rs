@@ -1,9 +1,9 @@
 //! What is known of an axis before it is recorded for good.
 
 use crate::choice::Choice;
-use crate::disturbance::Noise;
 use crate::flexible::{Flexible, identify};
 use crate::judgement::{self, Judgement};
+use crate::measured_noise::Noise;
 use crate::recording::Recording;
 use crate::state_space::{Measured, simulate};
 use crate::transfer::{Factor, TransferFunction};
