@@ -44,7 +44,7 @@ const BEFORE: [&str; 13] = [
     "note_once(",
     "fault(",
     "Fault::new(",
-    "Trouble::new(",
+    "IdentifyError::new(",
     "Obstacle::new(",
     "notes.push((",
     "reasons.push(place,",

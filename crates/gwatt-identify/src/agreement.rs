@@ -2,8 +2,8 @@
 //! by its acceleration. Where they do not, a unit, a rate or a column is wrong.
 
 use super::column::Quantity;
+use super::error::{IdentifyError, Outcome};
 use super::recording::{Recording, Signal};
-use super::trouble::{Outcome, Trouble};
 
 /// Stretches over which changes are compared.
 const STRETCHES: usize = 200;
@@ -39,7 +39,7 @@ fn check(of: &Signal, by: &Signal, period_s: f64) -> Outcome<()> {
         return Ok(());
     };
     let help = "check units, times and --rate-hz: one of the two has another scale, sign or rate, or is of another axis; leave it out if it is not needed";
-    let refuse = |what: String| Err(Trouble::new(what, help));
+    let refuse = |what: String| Err(IdentifyError::new(what, help));
     let positions = of.quantity == Quantity::Position;
     if alike < -ALIKE {
         return refuse(format!("{} grows where {} is negative", of.name, by.name));

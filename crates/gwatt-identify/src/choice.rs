@@ -1,6 +1,6 @@
 //! What may be chosen of how a flexible axis is identified.
 
-use super::neighbours::Given;
+use super::candidate_models::Given;
 
 /// How the transfer function is estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use std::str::FromStr;
 
 use super::column::{Meaning, quantity_of, unit_of, units_of};
+use super::error::{IdentifyError, Outcome};
 use super::header_name::suffix_of;
-use super::trouble::{Outcome, Trouble};
 
 /// A column and what it holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,12 +18,12 @@ pub struct MappedColumn {
 const HELP: &str = "write QUANTITY=COLUMN*FACTOR and a unit, such as torque=Iq*0.58Nm/A, position=Enc*0.001mm or time=#1*1ms";
 
 impl FromStr for MappedColumn {
-    type Err = Trouble;
+    type Err = IdentifyError;
 
     /// Reads `QUANTITY=COLUMN*FACTOR UNIT`; what stands after a `/` of the unit is what the
     /// column counts in, and does not matter. Without a factor it is 1.
     fn from_str(text: &str) -> Outcome<Self> {
-        let wrong = |what: String| Trouble::new(format!("--map {text}: {what}"), HELP);
+        let wrong = |what: String| IdentifyError::new(format!("--map {text}: {what}"), HELP);
         let (quantity, rest) = text
             .split_once('=')
             .ok_or_else(|| wrong("there is no =".to_owned()))?;
@@ -103,7 +103,7 @@ impl MappedColumn {
         by_number
             .or_else(|| names.iter().position(is_ours))
             .ok_or_else(|| {
-                Trouble::new(
+                IdentifyError::new(
                     format!("--map: there is no column {}", self.column),
                     format!("the columns are: {}", names.join(", ")),
                 )

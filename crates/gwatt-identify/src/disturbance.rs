@@ -5,16 +5,16 @@
 //! the force plain differences; where both are, it is in between, and an
 //! autoregressive filter makes the rest white.
 
+use super::candidate_models::Given;
 use super::chosen::{COARSE, LAGS};
 use super::data::Data;
-use super::ladder::SEARCH_STEPS;
-use super::leaky::Leaky;
+use super::leaky_integrator::Leaky;
 use super::measured_noise::Noise;
 use super::mode_starts;
-use super::neighbours::Given;
 use super::noise::{Whiteness, predicting};
 use super::output_error::{Effort, Estimate, refine, residuals};
 use super::spectral_lines::Lines;
+use super::stepwise_search::SEARCH_STEPS;
 use super::transfer::TransferFunction;
 
 /// Leaks that are tried, from sample to sample; nothing leaks for longer than the

@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 use super::agreement::agree;
 use super::column::{Kind, Quantity};
+use super::error::{IdentifyError, Outcome};
 use super::filter::{derivative, low_pass, second_derivative};
 use super::quality::{self, CutOff};
 use super::recording::{Recording, Signal};
-use super::trouble::{Outcome, Trouble};
 
 /// Below this share of the largest speed an axis counts as standing.
 const STANDING: f64 = 0.005;
@@ -89,7 +89,7 @@ pub(super) struct Raw {
 /// Without a force.
 pub(super) fn force_of(recording: &Recording) -> Outcome<Vec<f64>> {
     let Some(force) = recording.get(Quantity::Force) else {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             "there is no force or torque in the recording",
             "add a column force_n or torque_nm: from motor current, times the force constant",
         ));
@@ -132,7 +132,7 @@ fn raw(recording: &Recording, bandwidth_hz: f64) -> Outcome<Raw> {
         }
         (None, _, Some(velocity)) => derivative(velocity, t),
         _ => {
-            return Err(Trouble::new(
+            return Err(IdentifyError::new(
                 "there is no motion in the recording",
                 "add the load's position, speed or acceleration, such as position_mm",
             ));

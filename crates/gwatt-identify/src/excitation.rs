@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::Complex;
 use realfft::RealFftPlanner;
 
-use super::trouble::{Outcome, Trouble};
+use super::error::{IdentifyError, Outcome};
 
 /// Samples at most.
 pub const SAMPLES_MAX: usize = 20_000_000;
@@ -102,7 +102,7 @@ pub fn order_for(resolution_hz: f64, hold: usize, period_s: f64) -> Option<u32> 
 /// Values outside what can be made.
 pub fn make(shape: Shape, amplitude: f64, period_s: f64) -> Outcome<Excitation> {
     if !(amplitude.is_finite() && amplitude > 0.0) {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!("the amplitude {amplitude} is not positive"),
             "give a positive number",
         ));
@@ -153,7 +153,7 @@ fn m_sequence(order: u32, hold: usize, repetitions: usize, period_s: f64) -> Out
         .checked_sub(3)
         .and_then(|index| TAPS.get(index as usize))
         .ok_or_else(|| {
-            Trouble::new(
+            IdentifyError::new(
                 format!("there is no M-sequence of order {order} here"),
                 "give --order from 3 to 20",
             )
@@ -164,7 +164,7 @@ fn m_sequence(order: u32, hold: usize, repetitions: usize, period_s: f64) -> Out
         .and_then(|n| n.checked_mul(repetitions))
         .filter(|n| (1..=SAMPLES_MAX).contains(n));
     let Some(total) = total else {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!("the signal would not have between 1 and {SAMPLES_MAX} samples"),
             "choose another --order, --hold or --repeat",
         ));
@@ -191,7 +191,7 @@ fn m_sequence(order: u32, hold: usize, repetitions: usize, period_s: f64) -> Out
 fn samples(from_hz: f64, to_hz: f64, seconds: f64, period_s: f64) -> Outcome<usize> {
     let nyquist = 0.5 / period_s;
     if !(from_hz > 0.0 && to_hz > from_hz && to_hz < nyquist) {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!(
                 "the band {from_hz} to {to_hz} Hz cannot be made at {} Hz",
                 1.0 / period_s
@@ -201,7 +201,7 @@ fn samples(from_hz: f64, to_hz: f64, seconds: f64, period_s: f64) -> Outcome<usi
     }
     let n = seconds / period_s;
     if !(n >= 16.0 && n <= SAMPLES_MAX as f64) {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!("{seconds} s are {n:.0} samples, not between 16 and {SAMPLES_MAX}"),
             "choose another --seconds or --rate-hz",
         ));
@@ -240,7 +240,7 @@ fn random(from_hz: f64, to_hz: f64, n: usize, period_s: f64, seed: u64) -> Outco
     }
     let mut values = fft.make_output_vec();
     if lines == 0 || fft.process(&mut spectrum, &mut values).is_err() {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             "the band is narrower than the resolution",
             "make the signal longer with --seconds, or the band wider",
         ));

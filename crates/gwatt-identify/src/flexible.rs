@@ -3,14 +3,15 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::arx;
+use super::candidate_models::FAST;
 use super::chosen::{LAGS, filtered};
 use super::data::Data;
 use super::disturbance::as_it_is;
+use super::error::{IdentifyError, Outcome};
 use super::figure::Figure;
-use super::leaky::Leaky;
+use super::leaky_integrator::Leaky;
 use super::measured_noise::Noise;
 use super::methods::{Modelled, by_arx, by_response, by_search, by_subspace};
-use super::neighbours::FAST;
 use super::noise::Whiteness;
 use super::output_error::residuals;
 use super::parameters::parameters;
@@ -20,7 +21,6 @@ use super::rubbing::{Rubbing, Term};
 use super::spectrum::{FrequencyResponse, excited_rad_s, explained_share};
 use super::state_space::Measured;
 use super::transfer::{Factor, TransferFunction};
-use super::trouble::{Outcome, Trouble};
 
 pub use super::choice::{Choice, Method};
 
@@ -194,7 +194,7 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
     choice.given.delay_s = given.or((!searches).then_some(whole_s));
     let undisturbed = match &prepared.excitation {
         Some(r) => Some(arx::undisturbed(r, &prepared.input).ok_or_else(|| {
-            Trouble::new(
+            IdentifyError::new(
                 "the input does not follow from the excitation",
                 "check that the column of the excitation holds what was added to the torque",
             )
@@ -222,7 +222,7 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
     };
     let found = find(&choice);
     let found = found.ok_or_else(|| {
-        Trouble::new(
+        IdentifyError::new(
             "no stable model fits the recording",
             "check units and signs of the columns, excite longer, or give --order",
         )
@@ -349,7 +349,7 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
     };
     let gain = transfer.gain;
     if gain == 0.0 || !gain.is_finite() {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             "the axis does not answer the input",
             "check that input and motion are of the same axis and the same time",
         ));
@@ -449,7 +449,7 @@ pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Ou
     let leaky = leaky.and_then(|leaky| share(&leaky.data(&data)));
     let least = share(&data).map(|plain| plain.min(leaky.unwrap_or(plain)));
     least.ok_or_else(|| {
-        Trouble::new(
+        IdentifyError::new(
             "the model cannot be simulated on the second recording",
             "record both at the same rate",
         )

@@ -9,17 +9,17 @@
 use std::f64::consts::PI;
 
 use super::any_delay::{Timed, timed};
+use super::candidate_models::{Given, simpler};
 use super::chosen::{CHOSEN, COMPARED, Chosen, WHITENING_MAX, fewer_rows, is_white};
 use super::data::Data;
 use super::delay_profile::doubt_s;
 use super::disturbance::as_it_is;
-use super::ladder::{Ladder, Reach, Restart, STEPS_LAST, best_of};
 use super::measured_noise::Noise;
-use super::neighbours::{Given, simpler};
 use super::noise::predicting;
 use super::output_error::{Effort, Estimate, Fitting, residuals};
 use super::response_starts::from_subspace;
 use super::spectrum::FrequencyResponse;
+use super::stepwise_search::{Ladder, Reach, Restart, STEPS_LAST, best_of};
 use super::transfer::TransferFunction;
 
 /// Rounds of model and noise, after the one that the starts are fitted in.

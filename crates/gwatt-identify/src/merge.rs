@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
+use super::error::{IdentifyError, Outcome};
 use super::figure::Figure;
 use super::parts;
-use super::trouble::{Outcome, Trouble};
 use gwatt_machine::units::M_PER_MM;
 use gwatt_machine::{Axis, AxisId, AxisKind, Machine};
 
@@ -58,7 +58,7 @@ pub fn into_machine(
         .and_then(Item::as_table_like_mut)
         .ok_or_else(|| no_axis(path, axis))?;
     write_axis(table, axis, figures).map_err(|what| {
-        Trouble::new(
+        IdentifyError::new(
             format!("{path}, axis {letter}: {what}"),
             "state lead_mm (and gear_ratio) of the axis, or record load-side quantities",
         )
@@ -86,11 +86,11 @@ pub fn margin_into_machine(path: &str, text: &str, margin: f64) -> Outcome<Strin
     finished(path, &document)
 }
 
-fn refused(path: &str, what: &str) -> Trouble {
-    Trouble::new(format!("{path}: {what}"), "nothing was written")
+fn refused(path: &str, what: &str) -> IdentifyError {
+    IdentifyError::new(format!("{path}: {what}"), "nothing was written")
 }
 
-pub(super) fn no_axis(path: &str, axis: AxisId) -> Trouble {
+pub(super) fn no_axis(path: &str, axis: AxisId) -> IdentifyError {
     refused(
         path,
         &format!("the machine has no axis {}", axis.letter() as char),

@@ -1,12 +1,12 @@
 //! The methods that estimate a flexible axis.
 
 use super::arx;
+use super::candidate_models::{LAG_MAX, ORDER_MAX};
 use super::choice::Choice;
 use super::chosen::CHOSEN;
 use super::data::Data;
 use super::disturbance::as_it_is;
 use super::measured_noise::Noise;
-use super::neighbours::{LAG_MAX, ORDER_MAX};
 use super::output_error::Estimate;
 use super::prepared::Prepared;
 use super::response_fit;

@@ -2,8 +2,8 @@
 //! is left unexplained, while any delay is allowed; then the delays that go with
 //! these modes are distinguished.
 
+use super::candidate_models::{Given, LAG_MAX, ORDER_MAX};
 use super::modal::{Late, Modes};
-use super::neighbours::{Given, LAG_MAX, ORDER_MAX};
 use super::spectral_lines::Lines;
 use super::transfer::{Factor, TransferFunction};
 

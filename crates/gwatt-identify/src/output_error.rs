@@ -26,10 +26,10 @@ use super::transfer::TransferFunction;
 const STEPS_MAX: usize = 40;
 /// An improvement of the sum of squares below this share of one row's ends the
 /// search: far below what noise decides.
-const ENOUGH: f64 = 1e-3;
+const LEAST_GAIN: f64 = 1e-3;
 /// The same on the way where a position or speed was measured: friction, which no model
 /// has, is explained a little better with each step.
-const ENOUGH_INTEGRATED: f64 = 2e-2;
+const LEAST_GAIN_INTEGRATED: f64 = 2e-2;
 
 /// Damping of a first step. In positions, most of which is slow, everything but the
 /// gain is correlated: less is much there, and the last fit comes from nearby.
@@ -39,10 +39,10 @@ const DAMPING_LAST: f64 = 1e-12;
 
 /// So near to the criterion that is to be beaten, a fit is given this many times
 /// the steps.
-const NEAR: f64 = 20.0;
+const CRITERION_MARGIN: f64 = 20.0;
 const LONGER: usize = 4;
 /// Farther than this many times that, a fit that promises little is given up.
-const HOPE: f64 = 10.0;
+const GIVE_UP_RATIO: f64 = 10.0;
 
 /// A fitted model.
 #[derive(Debug, Clone)]
@@ -218,9 +218,9 @@ impl<'a> Fitting<'a> {
                 _ => DAMPING_LEAKY,
             },
             enough: match effort.steps {
-                STEPS_MAX => ENOUGH,
-                _ if raw.measured.integrators() > 0 && !raw.from_command => ENOUGH_INTEGRATED,
-                _ => ENOUGH,
+                STEPS_MAX => LEAST_GAIN,
+                _ if raw.measured.integrators() > 0 && !raw.from_command => LEAST_GAIN_INTEGRATED,
+                _ => LEAST_GAIN,
             },
             samples: raw.len(),
         };
@@ -295,7 +295,7 @@ impl Task<'_> {
             let missing = criterion(least, self.power, normal.rows, count, self.samples)
                 + self.charge(&transfer)
                 - effort.to_beat;
-            if round >= effort.steps && (missing > NEAR || effort.to_beat == f64::MAX) {
+            if round >= effort.steps && (missing > CRITERION_MARGIN || effort.to_beat == f64::MAX) {
                 break;
             }
             steps = round + 1;
@@ -308,7 +308,7 @@ impl Task<'_> {
             };
             // What the step promises, taken as straight: without hope there is no
             // need to look.
-            if (1..4).contains(&round) && missing > HOPE * NEAR {
+            if (1..4).contains(&round) && missing > GIVE_UP_RATIO * CRITERION_MARGIN {
                 let promised = libm::log(least / step.rest.max(ROUNDING * self.power));
                 if normal.rows as f64 * promised < 0.2 * missing {
                     break;
@@ -334,7 +334,8 @@ impl Task<'_> {
                     // Against what the step brought.
                     let brought = normal.rows as f64 * gained / least;
                     let missing = missing - brought;
-                    let is_slow = |share: f64| missing > NEAR && brought < share * missing;
+                    let is_slow =
+                        |share: f64| missing > CRITERION_MARGIN && brought < share * missing;
                     if (round >= 4 && is_slow(0.05)) || (round >= 7 && is_slow(0.2)) {
                         break;
                     }

@@ -5,11 +5,11 @@
 //! positive and multiplied where it is not, plus the standby power. Terms that
 //! the log does not show are left out.
 
+use super::error::{IdentifyError, Outcome};
 use super::figure::Figure;
 use super::normal::Normal;
 use super::peak_factor::{PeakFactor, factor_of, ratios};
 use super::sandwich::{sandwich, widening};
-use super::trouble::{Outcome, Trouble};
 
 pub use super::power_log::PowerLog;
 
@@ -122,8 +122,8 @@ impl<'a> Part<'a> {
     }
 }
 
-fn weak() -> Trouble {
-    Trouble::new(
+fn weak() -> IdentifyError {
+    IdentifyError::new(
         "the log does not distinguish mass and friction: there is too little motion",
         "log rapids and feeds at several speeds, with starts and stops",
     )
@@ -137,7 +137,7 @@ fn weak() -> Trouble {
 pub fn fit(log: &PowerLog) -> Outcome<PowerModel> {
     let n = log.power.len();
     if n < ROWS_MIN {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!("the log is too short: {n} rows"),
             "log at least some seconds of motion, with accelerations",
         ));
@@ -338,7 +338,7 @@ fn finish(log: &PowerLog, best: &Solved, wanted: Wanted) -> Outcome<PowerModel> 
         })
     });
     if mass.value <= 0.0 {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!("the mass comes out as {:.3}, not positive", mass.value),
             "check units and signs of speed, acceleration and power, and that they are of the same time",
         ));

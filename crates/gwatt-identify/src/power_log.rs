@@ -3,8 +3,8 @@
 use std::io::Read;
 
 use super::column::{Kind, Quantity, Reading, axis_of, read};
+use super::error::{IdentifyError, Outcome};
 use super::rows::{Rows, no_number};
-use super::trouble::{Outcome, Trouble};
 
 /// Rows at most.
 const ROWS_MAX: usize = 50_000_000;
@@ -89,7 +89,7 @@ impl PowerLog {
         let names = ["velocity_mm_s", "accel_mm_s2", "power_w"];
         for (place, name) in wanted.iter().zip(names) {
             if place.is_none() {
-                return Err(Trouble::new(
+                return Err(IdentifyError::new(
                     format!("the log has no column {name} for axis {axis}"),
                     format!(
                         "name it {name} or {}_{name}; other units: see --help",
@@ -123,7 +123,7 @@ impl PowerLog {
                 column.values.push(rows.number(*index).unwrap_or(f64::NAN));
             }
             if self.power.len() > ROWS_MAX {
-                return Err(Trouble::new(
+                return Err(IdentifyError::new(
                     format!("the log has more than {ROWS_MAX} rows"),
                     "cut it",
                 ));
@@ -156,7 +156,7 @@ impl PowerLog {
             }
             Reading::UnitInDoubt(
                 quantity @ (Quantity::Velocity | Quantity::Acceleration | Quantity::Power),
-            ) => Err(Trouble::new(
+            ) => Err(IdentifyError::new(
                 format!("the unit of column {name} is in doubt"),
                 format!(
                     "end its name with the unit, one of: {}",

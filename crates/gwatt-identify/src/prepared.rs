@@ -4,10 +4,10 @@ use super::agreement::agree;
 use super::choice::{Choice, Method};
 use super::column::Quantity;
 use super::command_input::CommandInput;
+use super::error::{IdentifyError, Outcome};
 use super::quality;
 use super::recording::Recording;
 use super::state_space::Measured;
-use super::trouble::{Outcome, Trouble};
 
 /// Input and output as they are fitted.
 pub(super) struct Prepared {
@@ -49,7 +49,7 @@ pub(super) fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepare
         (Some(force), _) => (force, true),
         (None, Some(command)) => (command, false),
         (None, None) => {
-            return Err(Trouble::new(
+            return Err(IdentifyError::new(
                 "there is neither torque nor force nor a position command in the recording",
                 "add a column torque_nm, force_n, or position_command_mm",
             ));
@@ -67,7 +67,7 @@ pub(super) fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepare
         .or_else(|| pick(Quantity::Velocity).map(|s| (s, Measured::Velocity)))
         .or_else(|| pick(Quantity::Position).map(|s| (s, Measured::Position)))
         .ok_or_else(|| {
-            Trouble::new(
+            IdentifyError::new(
                 "there is no motion in the recording",
                 "add the load's acceleration, speed or position, such as accel_m_s2",
             )
@@ -116,7 +116,7 @@ pub(super) fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepare
         prepared.early_s = lead * prepared.period_s - late_s;
     }
     if prepared.input.len() < 256 {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!(
                 "the recording is too short: {} samples",
                 prepared.input.len()

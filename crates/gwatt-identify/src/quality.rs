@@ -1,7 +1,7 @@
 //! Signals that cannot show anything: they do not move, or they are cut off.
 
+use super::error::{IdentifyError, Outcome};
 use super::recording::Signal;
-use super::trouble::{Outcome, Trouble};
 
 /// Refuses a signal that stays the same.
 ///
@@ -14,7 +14,7 @@ pub fn moves(signal: &Signal, help: &str) -> Outcome<()> {
     if high - low > 1e-9 * size.max(f64::MIN_POSITIVE) && high > low {
         return Ok(());
     }
-    Err(Trouble::new(
+    Err(IdentifyError::new(
         format!("{} stays at {low}: there is no excitation", signal.name),
         help,
     ))
@@ -96,7 +96,7 @@ pub fn not_saturated(signal: &Signal) -> Outcome<()> {
     } else {
         "smallest"
     };
-    Err(Trouble::new(
+    Err(IdentifyError::new(
         format!(
             "{} is saturated: {} samples stand at its {name} value {}",
             signal.name, found.samples, found.level

@@ -4,9 +4,9 @@ use std::io::Read;
 
 use super::column::{Kind, Meaning, Quantity, Reading, axis_of, read, units_of};
 use super::column_map::MappedColumn;
+use super::error::{IdentifyError, Outcome};
 use super::rows::{Lines, Rows, no_number};
 use super::sampling::even;
-use super::trouble::{Outcome, Trouble};
 
 /// Fewer samples than this are never enough.
 const SAMPLES_MIN: usize = 32;
@@ -84,7 +84,7 @@ impl Recording {
                 list.push(value);
             }
             if values.first().is_some_and(|list| list.len() > SAMPLES_MAX) {
-                return Err(Trouble::new(
+                return Err(IdentifyError::new(
                     format!("the recording has more than {SAMPLES_MAX} samples"),
                     "cut it, or record at a lower rate",
                 ));
@@ -92,7 +92,7 @@ impl Recording {
         }
         let samples = values.first().map_or(0, Vec::len);
         if samples < SAMPLES_MIN {
-            return Err(Trouble::new(
+            return Err(IdentifyError::new(
                 format!("the recording is too short: {samples} samples"),
                 format!("record at least {SAMPLES_MIN} samples, better several seconds"),
             ));
@@ -159,7 +159,7 @@ impl Recording {
                 Quantity::Time | Quantity::Power => continue,
             };
             if signal.name.to_ascii_lowercase().contains("load_") {
-                return Err(Trouble::new(
+                return Err(IdentifyError::new(
                     format!("{} turns, but the load of a screw slides", signal.name),
                     "leave --lead-mm out if the load turns; name the column without load_ if it is the motor's encoder",
                 ));
@@ -219,7 +219,7 @@ fn columns(header: &[String], how: &ReadAs) -> Outcome<(Vec<Column>, Vec<String>
             .iter()
             .any(|(_, _, known)| known.quantity == mapped.meaning.quantity)
         {
-            return Err(Trouble::new(
+            return Err(IdentifyError::new(
                 format!("--map gives two columns for one quantity: {name} is the second"),
                 "give each quantity once",
             ));
@@ -246,7 +246,7 @@ fn columns(header: &[String], how: &ReadAs) -> Outcome<(Vec<Column>, Vec<String>
                     .iter()
                     .find(|(_, _, known)| known.quantity == meaning.quantity)
                 {
-                    return Err(Trouble::new(
+                    return Err(IdentifyError::new(
                         format!("{other} and {name} are the same quantity"),
                         "leave one of them in the file, or put the axis letter in front, such as x_position_mm",
                     ));
@@ -254,7 +254,7 @@ fn columns(header: &[String], how: &ReadAs) -> Outcome<(Vec<Column>, Vec<String>
                 columns.push((index, name.clone(), meaning));
             }
             Reading::UnitInDoubt(quantity) if is_ours && !is_given(quantity) => {
-                return Err(Trouble::new(
+                return Err(IdentifyError::new(
                     format!("the unit of column {name} is in doubt"),
                     format!(
                         "end its name with the unit, one of: {}; or give it by --map",
@@ -269,11 +269,11 @@ fn columns(header: &[String], how: &ReadAs) -> Outcome<(Vec<Column>, Vec<String>
         .iter()
         .any(|(_, _, meaning)| meaning.quantity == Quantity::Time);
     match (has_time, how.rate_hz) {
-        (false, None) => Err(Trouble::new(
+        (false, None) => Err(IdentifyError::new(
             "there is no column time_s",
             "name the column of time time_s (or time_ms), or give --rate-hz; the header must name quantities and units",
         )),
-        (true, Some(_)) => Err(Trouble::new(
+        (true, Some(_)) => Err(IdentifyError::new(
             "the recording has times: --rate-hz has no meaning",
             "leave --rate-hz out",
         )),

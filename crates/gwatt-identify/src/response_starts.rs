@@ -1,8 +1,8 @@
 //! Models to start a search from: those that fit the measured frequency response, and
 //! those of subspaces of the data.
 
+use super::candidate_models::{Given, LAG_MAX, ORDER_MAX};
 use super::data::Data;
-use super::neighbours::{Given, LAG_MAX, ORDER_MAX};
 use super::response_fit::grow;
 use super::spectrum::FrequencyResponse;
 use super::subspace::{Subspace, with_poles};

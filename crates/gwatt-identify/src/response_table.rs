@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 
 use toml_edit::{Array, InlineTable, Item, Table, TableLike, Value};
 
+use super::error::{IdentifyError, Outcome};
 use super::merge::{axis_item, finished, no_axis, set, six_digits, sound};
 use super::transfer::Factor;
-use super::trouble::{Outcome, Trouble};
 use super::tune::Biquad;
 use gwatt_machine::AxisId;
 
@@ -42,7 +42,7 @@ pub fn into_machine(
     for (axis, figures) in responses {
         let item = axis_item(&mut document, *axis).ok_or_else(|| no_axis(path, *axis))?;
         write_axis(item, figures).ok_or_else(|| {
-            Trouble::new(
+            IdentifyError::new(
                 format!("{path}: the tables of axis {} cannot be changed", axis.letter() as char),
                 "write the axis as [axes.X], with [axes.X.response] and [axes.X.correction] below it",
             )

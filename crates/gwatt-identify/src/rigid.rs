@@ -6,12 +6,12 @@ use nalgebra::DVector;
 use super::column::Kind;
 use super::effects::{self, Effect, Found, Saturation, Shape};
 use super::equations::Equations;
+use super::error::{IdentifyError, Outcome};
 pub use super::figure::Figure;
 use super::friction::{Solved, Terms, inertial, left_above, left_of, solve_best};
 use super::noise::Whiteness;
 use super::recording::Recording;
 use super::rigidity::resonates;
-use super::trouble::{Outcome, Trouble};
 
 pub use super::friction::Friction;
 
@@ -122,7 +122,7 @@ pub fn fit_all(
         .collect::<Outcome<Vec<_>>>()?;
     let with_speed = all.iter().filter(|it| it.inside.speeds.is_some()).count();
     if with_speed != 0 && with_speed != all.len() {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             "some of the recordings have a speed or position, others have not",
             "join recordings of the same signals",
         ));
@@ -141,7 +141,7 @@ pub fn fit_all(
         if n >= EQUATIONS_MIN * terms.width() {
             return Ok(n);
         }
-        Err(Trouble::new(
+        Err(IdentifyError::new(
             format!(
                 "the recording is too short: {n} samples are left in a band of {bandwidth_hz} Hz where the axis moves"
             ),
@@ -160,8 +160,8 @@ pub fn fit_all(
     Ok(described(found, samples, bandwidth_hz))
 }
 
-fn not_excited() -> Trouble {
-    Trouble::new(
+fn not_excited() -> IdentifyError {
+    IdentifyError::new(
         "the motion does not distinguish mass and friction: it is not excited enough",
         "move to and fro at several speeds, with accelerations between; gwatt excite makes signals",
     )
@@ -257,7 +257,7 @@ fn sums(all: &[Equations], terms: Terms, theta: &[f64]) -> [f64; 2] {
 pub fn predict_error(rigid: &Rigid, other: &Recording) -> Outcome<f64> {
     let mut equations = Equations::of(other, rigid.bandwidth_hz)?;
     if equations.inside.speeds.is_some() == (rigid.terms == Terms::Offset) {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             "the second recording has other signals than the first",
             "record the same signals in both",
         ));
@@ -265,7 +265,7 @@ pub fn predict_error(rigid: &Rigid, other: &Recording) -> Outcome<f64> {
     if matches!(rigid.terms, Terms::OneWay | Terms::Constant) {
         let [forward, backward] = equations.directions();
         if forward.min(backward) > forward.max(backward) / 10 {
-            return Err(Trouble::new(
+            return Err(IdentifyError::new(
                 "the second recording moves both ways, the first one way only: its friction on the way back is not known",
                 "record motion to and fro, or check on a recording of the same direction",
             ));
@@ -279,7 +279,7 @@ pub fn predict_error(rigid: &Rigid, other: &Recording) -> Outcome<f64> {
         (&rigid.shapes, rigid.recordings),
     );
     let theta = theta.ok_or_else(|| {
-        Trouble::new(
+        IdentifyError::new(
             "the second recording does not go through a period of the cogging",
             "record as much motion as in the first",
         )

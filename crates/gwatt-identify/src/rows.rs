@@ -4,8 +4,8 @@
 use std::borrow::Cow;
 use std::io::{Chain, Cursor, Read};
 
+use super::error::{IdentifyError, Outcome};
 use super::layout::{Layout, number, text_of};
-use super::trouble::{Outcome, Trouble};
 
 /// Bytes at the beginning that show what a file is.
 const BEGINNING: u64 = 1 << 16;
@@ -40,7 +40,7 @@ impl<R: Read> Rows<R> {
             .map_err(|error| unreadable(&error))?;
         let is_wide = beginning.starts_with(&[0xFF, 0xFE]) || beginning.starts_with(&[0xFE, 0xFF]);
         if is_wide || beginning.contains(&0) {
-            return Err(Trouble::new(
+            return Err(IdentifyError::new(
                 if is_wide {
                     "the file is UTF-16"
                 } else {
@@ -117,7 +117,7 @@ impl<R: Read> Rows<R> {
                 "fewer",
             )
         };
-        Err(Trouble::new(
+        Err(IdentifyError::new(
             format!("line {line} has {found} values, {what} than the {named} names of the header"),
             help,
         ))
@@ -139,7 +139,7 @@ impl<R: Read> Rows<R> {
 
 /// A cell that is no number, in a line.
 #[must_use]
-pub fn no_number(line: u64, name: &str, cell: &str) -> Trouble {
+pub fn no_number(line: u64, name: &str, cell: &str) -> IdentifyError {
     let shown: String = cell
         .chars()
         .take(SHOWN)
@@ -151,7 +151,7 @@ pub fn no_number(line: u64, name: &str, cell: &str) -> Trouble {
         ""
     };
     let is_german = cell.contains(',') && cell.replacen(',', ".", 1).parse::<f64>().is_ok();
-    Trouble::new(
+    IdentifyError::new(
         format!("line {line}: {name} is \"{shown}{more}\", not a number"),
         if is_german {
             "export it with decimal points instead of decimal commas"
@@ -162,27 +162,27 @@ pub fn no_number(line: u64, name: &str, cell: &str) -> Trouble {
 }
 
 /// What is wrong with a header of one column, or none.
-fn one_column(name: &str) -> Trouble {
+fn one_column(name: &str) -> IdentifyError {
     if name.is_empty() {
-        return Trouble::new(
+        return IdentifyError::new(
             "the recording is empty",
             "record again; the first line names the columns, such as time_s,torque_nm,position_mm",
         );
     }
     if name.contains(';') || name.contains('\t') {
-        return Trouble::new(
+        return IdentifyError::new(
             "there are names of columns, but no numbers below them",
             "export it as a table: one line of names, below it lines of numbers; commas, semicolons or tabs between columns",
         );
     }
-    Trouble::new(
+    IdentifyError::new(
         "the recording has fewer than two columns",
         "separate columns with commas; the first line names them, such as time_s,torque_nm,position_mm",
     )
 }
 
-fn unreadable(error: &std::io::Error) -> Trouble {
-    Trouble::new(
+fn unreadable(error: &std::io::Error) -> IdentifyError {
+    IdentifyError::new(
         format!("the file cannot be read: {error}"),
         "check that it is a file, and that it may be read",
     )
@@ -190,11 +190,11 @@ fn unreadable(error: &std::io::Error) -> Trouble {
 
 /// Why the reader stopped, without its own words; `before` are lines that it does not
 /// count.
-fn broken(error: &csv::Error, before: u64) -> Trouble {
+fn broken(error: &csv::Error, before: u64) -> IdentifyError {
     let line = error.position().map(csv::Position::line);
     match error.kind() {
         csv::ErrorKind::Io(error) => unreadable(error),
-        _ => Trouble::new(
+        _ => IdentifyError::new(
             match line {
                 Some(line) => format!("line {} cannot be read", before + line),
                 None => "the file cannot be read".to_owned(),

@@ -1,7 +1,7 @@
 //! Times of samples: the period, and what is not even about them.
 
+use super::error::{IdentifyError, Outcome};
 use super::rows::Lines;
-use super::trouble::{Outcome, Trouble};
 
 /// Intervals may differ from the period by this share of it.
 const JITTER: f64 = 0.01;
@@ -24,7 +24,7 @@ pub fn even(time: &[f64], values: &mut [Vec<f64>], lines: &Lines) -> Outcome<(f6
     sorted.sort_by(f64::total_cmp);
     let usual = sorted.get(sorted.len() / 2).copied().unwrap_or_default();
     if usual.is_nan() || usual <= 0.0 {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             "the time does not go on",
             "time_s must grow from line to line",
         ));
@@ -91,11 +91,11 @@ fn difference(pair: &[f64]) -> f64 {
 }
 
 /// What is wrong with the interval after a sample.
-fn uneven(intervals: &[f64], index: usize, usual: f64, lines: &Lines) -> Trouble {
+fn uneven(intervals: &[f64], index: usize, usual: f64, lines: &Lines) -> IdentifyError {
     let interval = intervals.get(index).copied().unwrap_or_default();
     let (before, line) = (lines.of(index), lines.of(index + 1));
     if interval <= 0.0 {
-        return Trouble::new(
+        return IdentifyError::new(
             format!("line {line}: the time goes back or stands still"),
             "sort the samples by time, each once",
         );
@@ -103,12 +103,12 @@ fn uneven(intervals: &[f64], index: usize, usual: f64, lines: &Lines) -> Trouble
     let is_off = |other: &&f64| ((*other - usual) / usual).abs() > JITTER;
     let many = intervals.iter().filter(is_off).count();
     if interval > 1.5 * usual && many * 50 < intervals.len() {
-        return Trouble::new(
+        return IdentifyError::new(
             format!("a gap after line {before}: {interval:.6} s instead of {usual:.6} s"),
             "cut the recording there, or record again without losses",
         );
     }
-    Trouble::new(
+    IdentifyError::new(
         format!(
             "sampling is uneven: line {line} comes after {interval:.6} s, others after {usual:.6} s ({many} intervals are off by more than {} %)",
             100.0 * JITTER

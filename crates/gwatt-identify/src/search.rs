@@ -8,18 +8,18 @@ use super::chosen::{
 use nalgebra::Complex;
 
 use super::any_delay::{Timed, any_delay};
+use super::candidate_models::{Given, ONE, cancelled};
 use super::data::Data;
 use super::delay_profile::{Bounds, doubt_s, profile};
 use super::integrated;
-use super::ladder::{Ladder, Reach, Restart, SEARCH_STEPS, STEPS_LAST, best_of};
 use super::measured_noise::Noise;
 use super::mode_starts;
-use super::neighbours::{Given, ONE, cancelled};
 use super::noise::whitening;
 use super::output_error::{Effort, Estimate, Fitting, residuals};
 use super::response_starts;
 use super::spectral_lines::Lines;
 use super::spectrum::{FrequencyResponse, measure};
+use super::stepwise_search::{Ladder, Reach, Restart, SEARCH_STEPS, STEPS_LAST, best_of};
 use super::transfer::TransferFunction;
 
 const COMPARED_COMMAND: usize = 16_000;

@@ -5,7 +5,7 @@
 //! on several at once.
 
 use super::data::Data;
-use super::leaky::Fading;
+use super::leaky_integrator::Fading;
 use super::normal::Normal;
 use super::parallel::{Parallel, TAPS};
 use super::parameters::{parameters, probes, with};

@@ -11,9 +11,9 @@ use std::ops::Range;
 
 use nalgebra::Complex;
 
+use super::candidate_models::LAG_MAX;
 use super::data::Data;
 use super::measured_noise::Noise;
-use super::neighbours::LAG_MAX;
 use super::parallel::{Hold, Section, TAPS};
 use super::places::thinned;
 use super::spectrum::transform_of;

@@ -5,9 +5,9 @@ use std::fmt;
 use super::known::Known;
 use super::line_power::line_powers;
 use super::multisine::{from_rest, multisine};
+use crate::error::{IdentifyError, Outcome};
 use crate::excitation::{Excitation, Shape, make};
 use crate::transfer::Factor;
-use crate::trouble::{Outcome, Trouble};
 
 /// What a signal is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -185,7 +185,7 @@ pub(super) fn made(kind: Kind, known: &Known, amplitude: f64, seconds: f64) -> O
         multisine(&amplitudes, count)
     });
     let mut values = signal.ok_or_else(|| {
-        Trouble::new(
+        IdentifyError::new(
             format!("{kind} does not determine the axis in {seconds} s"),
             "give more --seconds",
         )

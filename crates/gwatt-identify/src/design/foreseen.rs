@@ -3,7 +3,7 @@
 
 use super::known::{Known, NOISE_SHARE};
 use crate::data::{Data, Signals};
-use crate::leaky::Leaky;
+use crate::leaky_integrator::Leaky;
 use crate::output_error::whitened;
 use crate::sensitivity::gather;
 use crate::transfer::Factor;

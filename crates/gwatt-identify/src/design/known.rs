@@ -1,13 +1,13 @@
 //! What is known of an axis before it is recorded for good.
 
 use crate::choice::Choice;
+use crate::error::{IdentifyError, Outcome};
 use crate::flexible::{Flexible, identify};
 use crate::judgement::{self, Judgement};
 use crate::measured_noise::Noise;
 use crate::recording::Recording;
 use crate::state_space::{Measured, simulate};
 use crate::transfer::{Factor, TransferFunction};
-use crate::trouble::{Outcome, Trouble};
 
 /// An axis as a first recording or a machine file shows it.
 #[derive(Debug, Clone)]
@@ -56,7 +56,7 @@ impl Known {
             } else {
                 "it is one of a command".to_owned()
             };
-            return Err(Trouble::new(
+            return Err(IdentifyError::new(
                 format!("a signal cannot be designed by this recording: {verdict}"),
                 "record force or torque and the motion of the axis, excited by `gwatt excite --amplitude …` alone",
             ));

@@ -3,8 +3,8 @@
 use super::candidate::{Kind, kinds, lowest_hz, made};
 use super::foreseen::Foreseen;
 use super::known::Known;
+use crate::error::{IdentifyError, Outcome};
 use crate::excitation::Excitation;
-use crate::trouble::{Outcome, Trouble};
 
 /// What the axis and its drive may do, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,7 +113,7 @@ fn compare(known: &Known, bounds: &Bounds, seconds: f64) -> Outcome<Proposal> {
     let mut found = found.into_iter();
     let Some((best, excitation)) = found.next() else {
         return Err(trouble.unwrap_or_else(|| {
-            Trouble::new(
+            IdentifyError::new(
                 format!("no signal of {seconds} s determines the axis"),
                 "give more --seconds",
             )
@@ -134,7 +134,7 @@ fn check(known: &Known, bounds: &Bounds, seconds: f64) -> Outcome<()> {
     ];
     for (name, value) in given {
         if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
-            return Err(Trouble::new(
+            return Err(IdentifyError::new(
                 format!("the {name} {value} is not positive"),
                 "give a positive number",
             ));
@@ -142,7 +142,7 @@ fn check(known: &Known, bounds: &Bounds, seconds: f64) -> Outcome<()> {
     }
     let samples = seconds / known.period_s;
     if !(SAMPLES_MIN..=SAMPLES_MAX).contains(&samples) {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!(
                 "{seconds} s are {samples:.0} samples, not between {SAMPLES_MIN} and {SAMPLES_MAX}"
             ),
@@ -176,7 +176,7 @@ fn candidate(
     seconds: f64,
 ) -> Outcome<(Candidate, Excitation)> {
     let vague = || {
-        Trouble::new(
+        IdentifyError::new(
             format!("{kind} does not determine the axis in {seconds} s"),
             "give more --seconds",
         )

@@ -14,8 +14,8 @@ pub use curve::Curve;
 pub use peaks::BlockPeaks;
 pub use trace::PowerTrace;
 
+use crate::error::{IdentifyError, Outcome};
 use crate::peak_factor::PeakFactor;
-use crate::trouble::{Outcome, Trouble};
 use align::{Place, align};
 
 /// Correlation from which on the log is that of the program.
@@ -117,13 +117,13 @@ impl Overlay {
 /// When the program takes no time, or nothing of both goes up and down together.
 pub fn overlay(curve: &Curve, log: &PowerTrace) -> Outcome<Overlay> {
     if curve.duration_s() <= 0.0 {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             "the program takes no time",
             "verify a program that moves",
         ));
     }
     let place = align(curve, log).ok_or_else(|| {
-        Trouble::new(
+        IdentifyError::new(
             "the log does not go up and down as the program would",
             "record the same program, from before it begins until it has ended",
         )

@@ -4,8 +4,8 @@ use std::io::Read;
 
 use crate::column::{Quantity, Reading, axis_of, read};
 use crate::column_map::MappedColumn;
+use crate::error::{IdentifyError, Outcome};
 use crate::rows::{Rows, no_number};
-use crate::trouble::{Outcome, Trouble};
 
 /// Samples at most.
 const SAMPLES_MAX: usize = 20_000_000;
@@ -64,7 +64,7 @@ impl PowerTrace {
                 continue;
             };
             if trace.time_s.last().is_some_and(|last| time_s <= *last) {
-                return Err(Trouble::new(
+                return Err(IdentifyError::new(
                     format!("line {line}: the time does not go on"),
                     "times must ascend: cut the log there, or sort it",
                 ));
@@ -72,14 +72,14 @@ impl PowerTrace {
             trace.time_s.push(time_s);
             trace.power_w.push(power_w);
             if trace.time_s.len() > SAMPLES_MAX {
-                return Err(Trouble::new(
+                return Err(IdentifyError::new(
                     format!("the log has more than {SAMPLES_MAX} rows"),
                     "cut it, or record at a lower rate",
                 ));
             }
         }
         if trace.time_s.len() < SAMPLES_MIN {
-            return Err(Trouble::new(
+            return Err(IdentifyError::new(
                 format!(
                     "the log has {} rows with time and power",
                     trace.time_s.len()
@@ -133,7 +133,7 @@ impl Columns {
             put(mapped.meaning.quantity, place, None);
         }
         let missing = |what: &str, name: &str| {
-            Trouble::new(
+            IdentifyError::new(
                 format!("the log has no column of {what}"),
                 format!(
                     "name it {name}, or say which it is: --map {what}=COLUMN*1{}",
@@ -145,7 +145,7 @@ impl Columns {
             return Err(if times.is_empty() {
                 missing("time", "time_s")
             } else {
-                Trouble::new(
+                IdentifyError::new(
                     "the log has several columns of time",
                     "say which: --map time=COLUMN*1s",
                 )
@@ -163,7 +163,7 @@ impl Columns {
             }
             ([_], _) | (_, false) => whole,
             _ => {
-                return Err(Trouble::new(
+                return Err(IdentifyError::new(
                     "the log has several columns of power",
                     "say which: --map power=COLUMN*1W; several of these are added up",
                 ));

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::dip::{Dip, dips};
 use crate::column::{Kind, Quantity};
+use crate::error::{IdentifyError, Outcome};
 use crate::figure::Figure;
 use crate::filter::{derivative, low_pass, second_derivative};
 use crate::flexible::{Choice, Flexible, Root, identify};
@@ -11,12 +12,11 @@ use crate::judgement::{self, Judgement};
 use crate::recording::Recording;
 use crate::spectrum::FrequencyResponse;
 use crate::transfer::{Factor, TransferFunction};
-use crate::trouble::{Outcome, Trouble};
 use gwatt_machine::units::{M_PER_MM, RAD_PER_DEG};
 
 /// A dip and a zero of the model are the same within this share of the
 /// frequency, and a few steps of its resolution.
-const NEAR: f64 = 0.1;
+const SAME_SHARE: f64 = 0.1;
 const STEPS: f64 = 3.0;
 
 /// A dip is missing in a model whose gain there is so many times larger.
@@ -246,7 +246,7 @@ fn is_at(zero: &Zero, dip: &Dip, response: &FrequencyResponse) -> bool {
         .first()
         .zip(response.frequency_hz.get(1));
     let step = ends.map_or(0.0, |(a, b)| b - a);
-    (hz - dip.frequency_hz).abs() <= NEAR * hz + STEPS * step
+    (hz - dip.frequency_hz).abs() <= SAME_SHARE * hz + STEPS * step
 }
 
 /// How much an excitation moves an axis.
@@ -281,7 +281,7 @@ pub fn excited(recording: &Recording, letter: char, least_mm_s2: Option<f64>) ->
     } else if let Some(signal) = pick(Quantity::Position) {
         (second_derivative(&smooth(&signal.values), t), signal.kind)
     } else {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!("axis {letter}: there is no motion in the recording"),
             "add the load's acceleration, speed or position, such as accel_m_s2",
         ));
@@ -300,7 +300,7 @@ pub fn excited(recording: &Recording, letter: char, least_mm_s2: Option<f64>) ->
         unit,
     };
     if let Some(least) = least_mm_s2.filter(|least| found.rms < *least) {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!(
                 "axis {letter}: the excitation moves it by {:.2} {unit} rms, less than the {least} that are asked for",
                 found.rms

@@ -14,8 +14,8 @@ use super::biquad::{Biquad, response};
 use super::discretize::{Discretization, discretize};
 use super::effort::Effort;
 use super::low_pass::LowPass;
+use crate::error::{IdentifyError, Outcome};
 use crate::transfer::{Factor, TransferFunction};
-use crate::trouble::{Outcome, Trouble};
 
 /// Share of the sampling rate that zeros and the low-pass stay below: nearer to
 /// half of it nothing is represented well.
@@ -78,7 +78,7 @@ pub struct Correction {
 pub fn design(zeros: &[(char, Vec<Factor>)], wish: &Wish) -> Outcome<Correction> {
     let rate_hz = 1.0 / wish.period_s;
     if !(wish.period_s > 0.0 && rate_hz.is_finite()) {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             "the period of the filters is not positive",
             "give the period of the controller's interpolation, such as --period-ms 1",
         ));
@@ -137,7 +137,7 @@ fn filter(
         )
         .filter(|sections| sections.iter().all(Biquad::is_stable))
         .ok_or_else(|| {
-            Trouble::new(
+            IdentifyError::new(
                 format!("the filter of axis {letter} would not be stable"),
                 "lower --low-pass-hz, or shorten --period-ms",
             )
@@ -191,13 +191,13 @@ fn sound_zero(letter: char, zero: Factor, rate_hz: f64) -> Outcome<()> {
     let hz = zero.corner_rad_s() / (2.0 * PI);
     let is_pair = matches!(zero, Factor::Pair { damping, .. } if damping.abs() < 1.0);
     if !(is_pair && hz.is_finite() && hz > 0.0) {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!("axis {letter}: a zero that does not oscillate cannot be evened out"),
             "give zeros as frequency_hz, above 0, and damping, between -1 and 1",
         ));
     }
     if hz > SHARE_MAX * rate_hz {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!(
                 "axis {letter}: the zero at {hz:.1} Hz is too fast for filters at {rate_hz:.0} Hz"
             ),
@@ -214,7 +214,7 @@ fn low_pass(zeros: &[(char, Vec<Factor>)], wish: &Wish, needed: usize) -> Outcom
     let rate_hz = 1.0 / wish.period_s;
     if wish.no_low_pass {
         if wish.discretization != Discretization::Matched && needed > 0 {
-            return Err(Trouble::new(
+            return Err(IdentifyError::new(
                 format!(
                     "without a low-pass the filters are not causal as {} makes them",
                     wish.discretization.name()
@@ -235,7 +235,7 @@ fn low_pass(zeros: &[(char, Vec<Factor>)], wish: &Wish, needed: usize) -> Outcom
     };
     let order = wish.order.unwrap_or(needed + spare);
     if order < needed {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!(
                 "a low-pass of order {order} under a numerator of order {needed}: the filter would not be causal"
             ),
@@ -243,7 +243,7 @@ fn low_pass(zeros: &[(char, Vec<Factor>)], wish: &Wish, needed: usize) -> Outcom
         ));
     }
     if order > ORDER_MAX {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!("a low-pass of order {order}: at most {ORDER_MAX} can be had"),
             "give a lower --low-pass-order, or fewer zeros",
         ));
@@ -257,7 +257,7 @@ fn low_pass(zeros: &[(char, Vec<Factor>)], wish: &Wish, needed: usize) -> Outcom
         .bandwidth_hz
         .unwrap_or_else(|| (ABOVE_ZEROS * highest).min(SHARE_MAX * rate_hz));
     if !(bandwidth_hz > 0.0 && bandwidth_hz <= SHARE_MAX * rate_hz * (1.0 + 1e-9)) {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!("a low-pass of {bandwidth_hz} Hz cannot be had at {rate_hz:.0} Hz"),
             format!(
                 "give --low-pass-hz between 0 and {:.1}, or shorten --period-ms",

@@ -11,8 +11,8 @@ use super::axis::{AxisResponse, Zero};
 use super::correction::{Correction, Wish};
 use super::discretize::Discretization;
 use super::low_pass::LowPass;
+use crate::error::{IdentifyError, Outcome};
 use crate::transfer::Factor;
-use crate::trouble::{Outcome, Trouble};
 
 /// Letters in the order of reports.
 const LETTERS: &str = "XYZABCUVWE";
@@ -91,7 +91,7 @@ impl Parameters {
     /// What is wrong with it, with its line.
     pub fn read(text: &str) -> Outcome<Self> {
         let file: File = toml::from_str(text).map_err(|error| {
-            Trouble::new(
+            IdentifyError::new(
                 format!(
                     "this is no file of parameters: {}",
                     error.to_string().trim_end()
@@ -174,8 +174,8 @@ impl Parameters {
     }
 }
 
-fn refused(message: String) -> Trouble {
-    Trouble::new(message, "gwatt tune --toml writes files that it reads back")
+fn refused(message: String) -> IdentifyError {
+    IdentifyError::new(message, "gwatt tune --toml writes files that it reads back")
 }
 
 fn positive(key: &str, value: Option<f64>) -> Outcome<()> {
@@ -270,7 +270,7 @@ fn axis(name: &str, table: &AxisTable) -> Outcome<AxisResponse> {
         notes: Vec::new(),
     };
     if !axis.transfer().is_stable() {
-        return Err(Trouble::new(
+        return Err(IdentifyError::new(
             format!("axis {letter}: a pole is not stable"),
             "poles have a damping above 0, or a time constant above 0",
         ));

@@ -5,7 +5,7 @@ use super::correction::{Correction, Wish, design};
 use super::delay::{Advice, advice};
 use super::discretize::Discretization;
 use super::mismatch::{Pair, mismatch};
-use crate::trouble::{Outcome, Trouble};
+use crate::error::{IdentifyError, Outcome};
 
 /// Axes, their filters, and what these do.
 #[derive(Debug, Clone)]
@@ -32,7 +32,7 @@ impl Tuned {
     /// Axes that cannot be compared, or a filter that cannot be realised.
     pub fn new(axes: Vec<AxisResponse>, wish: Wish, band_hz: f64) -> Outcome<Self> {
         if axes.len() < 2 {
-            return Err(Trouble::new(
+            return Err(IdentifyError::new(
                 "one axis alone has nothing to be like",
                 "give a recording of each axis that moves along the path",
             ));
@@ -40,7 +40,7 @@ impl Tuned {
         for (index, axis) in axes.iter().enumerate() {
             let others = axes.iter().take(index);
             if others.clone().any(|other| other.letter == axis.letter) {
-                return Err(Trouble::new(
+                return Err(IdentifyError::new(
                     format!("axis {} is given twice", axis.letter),
                     "one recording for each axis",
                 ));
@@ -51,7 +51,7 @@ impl Tuned {
                 } else {
                     (other.letter, axis.letter)
                 };
-                return Err(Trouble::new(
+                return Err(IdentifyError::new(
                     format!(
                         "axis {command} is known from its command, axis {force} from its force"
                     ),
@@ -60,7 +60,7 @@ impl Tuned {
             }
         }
         if !(band_hz > 0.0 && band_hz <= 0.5 / wish.period_s) {
-            return Err(Trouble::new(
+            return Err(IdentifyError::new(
                 format!("axes cannot be compared up to {band_hz} Hz"),
                 format!(
                     "give --band-hz between 0 and {:.1}: filters know no more at this period",
@@ -108,7 +108,7 @@ fn refuse_distorted(correction: &Correction, band_hz: f64) -> Outcome<()> {
     if most <= DISTORTED_DB {
         return Ok(());
     }
-    Err(Trouble::new(
+    Err(IdentifyError::new(
         format!(
             "as zoh makes them, the filters are up to {most:.1} dB from what they stand for, up to {band_hz} Hz"
         ),

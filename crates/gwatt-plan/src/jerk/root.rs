@@ -13,7 +13,7 @@ const STEPS: u32 = 128;
 const ROUNDING: f64 = 1e-14;
 /// A value that counts as 0 at the end of an interval, relative to its terms:
 /// a state that was planned before and read back must not lead to a detour.
-const NEAR: f64 = 1e-12;
+const ZERO_AT_END: f64 = 1e-12;
 
 /// A value of a function with its slope and the size of its terms.
 #[derive(Debug, Clone, Copy)]
@@ -63,7 +63,7 @@ pub(super) fn roots(
 
 /// Whether a value that [`roots`] handed out is a root but for rounding.
 pub(super) fn is_root(residual: f64) -> bool {
-    residual <= NEAR
+    residual <= ZERO_AT_END
 }
 
 /// The root between two points of different signs.

@@ -29,7 +29,7 @@ pub struct Given {
 /// True for models of one shape from which a fit comes to the same end.
 #[must_use]
 pub fn are_alike(a: &TransferFunction, b: &TransferFunction) -> bool {
-    const NEAR: f64 = 0.01;
+    const SAME_SHARE: f64 = 0.01;
     let factors = |x: &TransferFunction| -> Vec<Factor> {
         let all = x.zeros.iter().chain(&x.poles);
         all.copied().collect()
@@ -45,15 +45,15 @@ pub fn are_alike(a: &TransferFunction, b: &TransferFunction) -> bool {
                 damping: than,
             },
         ) => {
-            (omega_rad_s / other - 1.0).abs() < NEAR
-                && (damping - than).abs() < NEAR * damping.abs().max(0.02)
+            (omega_rad_s / other - 1.0).abs() < SAME_SHARE
+                && (damping - than).abs() < SAME_SHARE * damping.abs().max(0.02)
         }
         (
             Factor::Real { time_constant_s },
             Factor::Real {
                 time_constant_s: other,
             },
-        ) => (time_constant_s / other - 1.0).abs() < 10.0 * NEAR,
+        ) => (time_constant_s / other - 1.0).abs() < 10.0 * SAME_SHARE,
         _ => false,
     };
     let (left, right) = (factors(a), factors(b));
@@ -77,7 +77,7 @@ pub fn neighbours(
     let mut out = reflected(from, given, period_s);
     out.extend(as_delay(from, given, period_s));
     if given.order.is_none() {
-        out.extend(cancelled(from, NEAR));
+        out.extend(cancelled(from, CANCELLED_SHARE));
         out.extend(without_mode(from, far_zero, true));
         let lean = lean(from, response.band_rad_s());
         if lean.order() < from.order() {
@@ -138,7 +138,7 @@ pub fn neighbours(
 }
 
 /// A pole and a zero so near, as a share, may stand for nothing next to one another.
-const NEAR: f64 = 0.2;
+const CANCELLED_SHARE: f64 = 0.2;
 
 /// Without a pole and a zero that are as near to each other as that.
 #[must_use]

@@ -1,7 +1,7 @@
 //! From models to start with, step by step to neighbours that explain the recording
 //! better, until there is none.
 
-use super::neighbours::{Given, are_alike, neighbours, restarts};
+use super::candidate_models::{Given, are_alike, neighbours, restarts};
 use super::output_error::{Effort, Estimate, Fitting};
 use super::spectrum::FrequencyResponse;
 use super::transfer::{Factor, TransferFunction};
@@ -37,7 +37,7 @@ pub fn best_of(mut found: Vec<Estimate>) -> impl Iterator<Item = Estimate> {
 /// True for models with as many zeros and poles at about the same places, and with
 /// the same delay.
 fn is_of_kind(a: &TransferFunction, b: &TransferFunction) -> bool {
-    const NEAR: f64 = 0.2;
+    const SAME_CORNER: f64 = 0.2;
     let corners = |list: &[Factor]| -> Vec<f64> {
         let mut corners: Vec<f64> = list.iter().map(|x| x.corner_rad_s()).collect();
         corners.sort_by(f64::total_cmp);
@@ -45,7 +45,7 @@ fn is_of_kind(a: &TransferFunction, b: &TransferFunction) -> bool {
     };
     let are_near = |a: &[Factor], b: &[Factor]| {
         let (a, b) = (corners(a), corners(b));
-        let apart = |(a, b): (&f64, &f64)| libm::log(a / b).abs() < NEAR;
+        let apart = |(a, b): (&f64, &f64)| libm::log(a / b).abs() < SAME_CORNER;
         a.len() == b.len() && a.iter().zip(&b).all(apart)
     };
     a.delay_s == b.delay_s && are_near(&a.zeros, &b.zeros) && are_near(&a.poles, &b.poles)
@@ -229,12 +229,12 @@ fn needed(found: &Estimate, band_rad_s: f64) -> Vec<(bool, Factor)> {
 
 /// True for a model that has nothing near to one of those.
 fn lacks(model: &TransferFunction, needed: &[(bool, Factor)]) -> bool {
-    const NEAR: f64 = 0.3;
+    const SAME_CORNER: f64 = 0.3;
     needed.iter().any(|(is_zero, factor)| {
         let have = if *is_zero { &model.zeros } else { &model.poles };
         !have.iter().any(|other| {
             let apart = libm::log(other.corner_rad_s() / factor.corner_rad_s());
-            other.degree() == factor.degree() && apart.abs() < NEAR
+            other.degree() == factor.degree() && apart.abs() < SAME_CORNER
         })
     })
 }

@@ -3,14 +3,14 @@
 /// A refusal: what is wrong, and what helps.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}\n  help: {help}")]
-pub struct Trouble {
+pub struct IdentifyError {
     /// What is wrong.
     pub message: String,
     /// What to do.
     pub help: String,
 }
 
-impl Trouble {
+impl IdentifyError {
     /// Both sentences.
     pub fn new(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self {
@@ -21,4 +21,4 @@ impl Trouble {
 }
 
 /// A result or a refusal.
-pub type Outcome<T> = Result<T, Trouble>;
+pub type Outcome<T> = Result<T, IdentifyError>;
