@@ -1,5 +1,7 @@
 //! Tests.
 
+#![allow(clippy::too_many_lines, reason = "tests are lists of cases")]
+
 mod accuracy;
 mod servo;
 mod bus;

@@ -5,7 +5,6 @@ use insta::assert_snapshot;
 use super::{SPINDLE, moves};
 
 #[test]
-#[allow(clippy::too_many_lines, reason = "a list of programs")]
 fn each_refusal_once() {
     let rs274 = [
         "G81 X1 Z-1",

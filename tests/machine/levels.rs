@@ -61,7 +61,6 @@ fn levels_are_read_in_their_order() {
 const TWO: &str = "level = [{ word = \"G187 P1\", accel_percent = 200 }, { word = \"G187 P2\", power_on = true }]";
 
 #[test]
-#[allow(clippy::too_many_lines, reason = "one case after the other")]
 fn what_cannot_be_is_said() {
     let pair = |first: &str, second: &str| {
         format!("[[levels]]\nacts_on = \"feeds\"\nlevel = [{{ {first} }}, {{ {second} }}]")

@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use super::refusal;
 /// What is not followed is refused by its name.
 #[test]
-#[allow(clippy::too_many_lines, reason = "a table")]
 fn refusals_name_the_construct() {
     let mut wrong = String::new();
     let cases = [

@@ -115,12 +115,10 @@ pub(super) fn prepare(recording: &Recording, choice: &Choice) -> Outcome<Prepare
         take_early(&mut prepared.input, lead as usize);
         prepared.early_s = lead * prepared.period_s - late_s;
     }
-    if prepared.input.len() < 256 {
+    let samples = prepared.input.len();
+    if samples < 256 {
         return Err(IdentifyError::new(
-            format!(
-                "the recording is too short: {} samples",
-                prepared.input.len()
-            ),
+            format!("the recording is too short: {samples} samples"),
             "record some seconds: 4 s at 1 kHz are usual",
         ));
     }

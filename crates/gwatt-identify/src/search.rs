@@ -136,21 +136,8 @@ fn choose(
         let Some(found) = best_of(best_of(tried).filter_map(again).collect()).next() else {
             break;
         };
-        // Between the steps there is nothing to be found.
-        let is_open = given.delay_s.is_none() && !(data.from_command && others > step_s);
-        let Timed {
-            found,
-            is_free: delay_is_free,
-            alone_s,
-        } = if is_open {
-            any_delay(on_long, data.period_s, found)
-        } else {
-            Timed::as_it_is(found)
-        };
-        let delay_doubt_s = match given.delay_s {
-            Some(_) => 0.0,
-            None => libm::hypot(others, alone_s),
-        };
+        let (found, delay_is_free, delay_doubt_s) =
+            timed((on_long, found), data, given, (others, step_s));
         let found = on_long.settled(found)?;
         let left = residuals(&long, &found)?;
         let exact = found.rest <= 1e-12 * found.power;
@@ -167,6 +154,32 @@ fn choose(
         noise.taps = whitening(&left, WHITENING_MAX);
     }
     best
+}
+
+/// A model with any delay, where that can be found: whether it is free, and how far it is in
+/// doubt; `others_s` is how far other models have other delays.
+fn timed(
+    (fitting, found): (&Fitting<'_>, Estimate),
+    data: &Data<'_>,
+    given: Given,
+    (others_s, step_s): (f64, f64),
+) -> (Estimate, bool, f64) {
+    // Between the steps there is nothing to be found.
+    let is_open = given.delay_s.is_none() && !(data.from_command && others_s > step_s);
+    let Timed {
+        found,
+        is_free,
+        alone_s,
+    } = if is_open {
+        any_delay(fitting, data.period_s, found)
+    } else {
+        Timed::as_it_is(found)
+    };
+    let doubt_s = match given.delay_s {
+        Some(_) => 0.0,
+        None => libm::hypot(others_s, alone_s),
+    };
+    (found, is_free, doubt_s)
 }
 
 /// The last fit, on all samples, and the noise that goes with it.

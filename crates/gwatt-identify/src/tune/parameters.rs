@@ -187,12 +187,9 @@ fn positive(key: &str, value: Option<f64>) -> Outcome<()> {
     }
 }
 
-fn axis(name: &str, table: &AxisTable) -> Outcome<AxisResponse> {
-    let mut letters = name.chars();
-    let letter = letters
-        .next()
-        .filter(|letter| LETTERS.contains(*letter) && letters.next().is_none())
-        .ok_or_else(|| refused(format!("[axes.{name}]: {name} is no axis")))?;
+/// Whether an axis turns, whether its input is a command, and its mass or inertia; what does not
+/// go together is refused.
+fn input_of(letter: char, table: &AxisTable) -> Outcome<(bool, bool, Option<f64>)> {
     let (rotary, from_command) = match table.input.as_str() {
         "force" => (false, false),
         "torque" => (true, false),
@@ -245,6 +242,16 @@ fn axis(name: &str, table: &AxisTable) -> Outcome<AxisResponse> {
             "axis {letter}: more than {FACTORS_MAX} zeros and poles"
         )));
     }
+    Ok((rotary, from_command, inertia))
+}
+
+fn axis(name: &str, table: &AxisTable) -> Outcome<AxisResponse> {
+    let mut letters = name.chars();
+    let letter = letters
+        .next()
+        .filter(|letter| LETTERS.contains(*letter) && letters.next().is_none())
+        .ok_or_else(|| refused(format!("[axes.{name}]: {name} is no axis")))?;
+    let (rotary, from_command, inertia) = input_of(letter, table)?;
     let zeros = evened(letter, &table.zeros)?;
     let list = |entries: &[FactorTable]| -> Outcome<Vec<Factor>> {
         entries.iter().map(|entry| factor(letter, entry)).collect()
