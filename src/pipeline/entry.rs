@@ -265,7 +265,8 @@ impl Entry {
             rests: !facts.compensated && (stops || stopping && self.moves == 1),
             line_before: !facts.compensated,
             apart: self.apart,
-            stop_word: self.takes_stop_word(machine, skips),
+            stop_word: machine.controller.language.exact_stop_word.is_some()
+                && self.takes_stop_word(machine, skips),
             unsplit: self.unsplit(mv),
             reason: reason_text,
             reason_help,
@@ -347,12 +348,11 @@ impl Entry {
         one_move && (machine.controller.planner.dwell_stops || by_words)
     }
 
-    /// Whether the word for an exact stop may be put into its block.
+    /// Whether the word for an exact stop may be put into its block or before it.
     pub(super) fn takes_stop_word(&self, machine: &Machine, skips: bool) -> bool {
         self.keeps_its_words(skips).is_none()
             && self.moves == 1
             && !self.block.words.is_empty()
-            && machine.controller.language.exact_stop_word.is_some()
             && self.may_stop_exactly(machine)
     }
 
@@ -363,6 +363,7 @@ impl Entry {
         !self.facts.compensated
             && !words.any(|word| word.letter == b'G' && (61.0..=64.0).contains(&word.value))
             && (language.exact_stop_word.is_some()
+                || language.stops_by_mode()
                 || language.family == Family::Rs274
                     && language.g61_1 == PathMode::ExactStop
                     && self.one_corner

@@ -137,7 +137,7 @@ impl<'m> Rewriter<'m> {
     pub fn write(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
         self.note_end(view.text);
         let facts = view.facts;
-        if !view.change.exact_stop {
+        if !(view.change.exact_stop || view.change.stop) {
             self.blend_again(out);
         }
         // Nothing can be put back inside a block that takes no further word.
@@ -407,8 +407,13 @@ impl<'m> Rewriter<'m> {
             text.extend(style.spaced.then_some(b' '));
             self.edits.push(Edit::insert(first.span.start, text));
         } else if self.blend_words.is_none() {
-            self.insert_line(EXACT_STOP, out);
-            self.blend_words = view.after.blend_words();
+            if self.machine.controller.language.stops_by_mode() {
+                self.insert_line("G61", out);
+                self.blend_words = Some("G64".to_owned());
+            } else {
+                self.insert_line(EXACT_STOP, out);
+                self.blend_words = view.after.blend_words();
+            }
         }
     }
 

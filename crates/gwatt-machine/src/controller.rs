@@ -131,6 +131,16 @@ pub struct Dialect {
 }
 
 impl Language {
+    /// Whether G61 puts blocks in exact stop and G64 ends that, where no word does it for one
+    /// block.
+    #[must_use]
+    pub fn stops_by_mode(&self) -> bool {
+        self.family == Family::Iso
+            && self.exact_stop_word.is_none()
+            && self.g61 == PathMode::ExactStop
+            && self.g64 == PathMode::LookAhead
+    }
+
     /// The word for exact stop in one block, such as `G9`.
     #[must_use]
     pub fn stop_word(&self) -> Option<String> {
@@ -338,14 +348,14 @@ pub enum RapidKnob {
 }
 
 impl Controller {
-    /// Whether a feed that stands for a rapid is stopped by words alone, in its block and in
+    /// Whether a feed that stands for a rapid is stopped by words alone, for its block and for
     /// the block before it: rapids begin and end at rest, and no dwell is known to stop the
     /// axes.
     #[must_use]
     pub fn stops_by_word(&self) -> bool {
         self.planner.rapid_joint == RapidJoint::Stop
             && !self.planner.dwell_stops
-            && self.language.exact_stop_word.is_some()
+            && (self.language.exact_stop_word.is_some() || self.language.stops_by_mode())
     }
 
     /// The confirmed knob that takes a value for each axis and else does what the one
