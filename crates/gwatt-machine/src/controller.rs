@@ -131,12 +131,13 @@ pub struct Dialect {
 }
 
 impl Language {
-    /// Whether G61 puts blocks in exact stop and G64 ends that, where no word does it for one
-    /// block.
+    /// Whether G61 puts blocks in exact stop and G64 ends that, on a control that blends from
+    /// the beginning and has no word for one block.
     #[must_use]
     pub fn stops_by_mode(&self) -> bool {
         self.family == Family::Iso
             && self.exact_stop_word.is_none()
+            && self.power_on_mode == PathMode::LookAhead
             && self.g61 == PathMode::ExactStop
             && self.g64 == PathMode::LookAhead
     }
