@@ -3,6 +3,7 @@
 mod accuracy;
 mod commanded;
 mod designed;
+mod effects;
 mod joined;
 mod layouts;
 mod positions;
