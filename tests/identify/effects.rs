@@ -2,8 +2,9 @@
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-
-use crate::shop::Shop;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
 
 /// 80 kg with 30 N of Coulomb friction and 40 N of cogging every 12 mm, moved along two sines; the
 /// noise is 2 N.
@@ -41,12 +42,29 @@ fn figure(text: &str, name: &str) -> f64 {
     line.split_whitespace().next().unwrap().parse().unwrap()
 }
 
+/// Exit code, what is printed and what is said.
+fn identify(folder: &Path, more: [&str; 2]) -> (Option<i32>, String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_gwatt"))
+        .current_dir(folder)
+        .args(["identify", "a.csv", "--axis", "X"])
+        .args(more)
+        .output()
+        .unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (
+        output.status.code(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
 #[test]
 fn cogging_is_named_with_its_figures() {
-    let shop = Shop::mill("fanuc", "peak_power_w = 1000", "", "");
-    shop.put("a.csv", &with_cogging());
-    let (code, text, errors) = shop.run("identify a.csv --axis X --json a.json");
-    assert_eq!(code, 0, "{errors}");
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("a.csv"), with_cogging()).unwrap();
+    let (code, text, errors) = identify(folder.path(), ["--json", "a.json"]);
+    assert_eq!(code, Some(0), "{errors}");
     for (name, expected, within) in [
         ("mass", 80.0, 0.1),
         ("Coulomb friction", 30.0, 0.3),
@@ -57,7 +75,7 @@ fn cogging_is_named_with_its_figures() {
     }
     assert!(text.contains(" N, every 12.00"), "{text}");
     assert!(text.contains("\nverdict: cogging: "), "{text}");
-    let json: serde_json::Value = serde_json::from_str(&shop.get("a.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&fs::read(at("a.json")).unwrap()).unwrap();
     let effect = &json["effects"][0];
     assert_eq!(
         (&effect["effect"], &json["verdict"]),
@@ -67,7 +85,11 @@ fn cogging_is_named_with_its_figures() {
     assert!((period_m - 0.012).abs() < 1e-5, "{period_m}");
     assert!(json["saturation"].is_null());
     // A machine file has no place for it.
-    let (code, _, errors) = shop.run("identify a.csv --axis X --into mill.toml");
-    assert_eq!(code, 1);
+    let machine = "schema = 1\nname = \"a\"\ncontroller = \"iso\"\n[converter]\npeak_power_w = 900\n\
+                   [axes.X]\nkind = \"linear\"\nrapid_mm_min = 9000\naccel_mm_s2 = 900\nmass_kg = 50\n";
+    fs::write(at("a.toml"), machine).unwrap();
+    let (code, _, errors) = identify(folder.path(), ["--into", "a.toml"]);
+    assert_eq!(code, Some(1));
     assert!(errors.contains("--force writes all the same"), "{errors}");
+    assert_eq!(fs::read_to_string(at("a.toml")).unwrap(), machine);
 }
