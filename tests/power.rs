@@ -337,13 +337,15 @@ proptest! {
             peaks_agree(found.peak_w, sampled.peak_w, scale)?;
             peaks_agree(found.regen_w, sampled.regen_w, scale)
         };
-        // Few samples may miss the highest of several peaks.
-        let sampled = sample(&machine, &mv, &plan, 100);
-        if agree(&sampled).is_err() {
-            agree(&sample(&machine, &mv, &plan, 20_000))?;
+        let scale_j = found.energy_j.abs() + found.peak_w * plan.duration_s;
+        let off = |sampled: &Sampled| (found.energy_j - sampled.energy_j).abs() / scale_j;
+        // Few samples may miss the highest of several peaks, and where power begins to be fed back.
+        let mut sampled = sample(&machine, &mv, &plan, 100);
+        if agree(&sampled).is_err() || off(&sampled) > 1e-4 {
+            sampled = sample(&machine, &mv, &plan, 20_000);
         }
-        let scale = found.energy_j.abs() + found.peak_w * plan.duration_s;
-        prop_assert!((found.energy_j - sampled.energy_j).abs() <= 1e-4 * scale);
+        agree(&sampled)?;
+        prop_assert!(off(&sampled) <= 1e-4 || scale_j == 0.0, "{}", off(&sampled));
     }
 
     #[test]
