@@ -337,15 +337,15 @@ proptest! {
             peaks_agree(found.peak_w, sampled.peak_w, scale)?;
             peaks_agree(found.regen_w, sampled.regen_w, scale)
         };
-        let scale_j = found.energy_j.abs() + found.peak_w * plan.duration_s;
-        let off = |sampled: &Sampled| (found.energy_j - sampled.energy_j).abs() / scale_j;
-        // Few samples may miss the highest of several peaks, and where power begins to be fed back.
-        let mut sampled = sample(&machine, &mv, &plan, 100);
-        if agree(&sampled).is_err() || off(&sampled) > 1e-4 {
-            sampled = sample(&machine, &mv, &plan, 20_000);
+        // Few samples may miss the highest of several peaks.
+        let sampled = sample(&machine, &mv, &plan, 100);
+        if agree(&sampled).is_err() {
+            agree(&sample(&machine, &mv, &plan, 20_000))?;
         }
-        agree(&sampled)?;
-        prop_assert!(off(&sampled) <= 1e-4 || scale_j == 0.0, "{}", off(&sampled));
+        // Where weights cancel, what is left is rounding.
+        let rounding_j = 1e-12 * scale * plan.duration_s;
+        let scale_j = found.energy_j.abs() + found.peak_w * plan.duration_s;
+        prop_assert!((found.energy_j - sampled.energy_j).abs() <= 1e-4 * scale_j + rounding_j);
     }
 
     #[test]
@@ -474,7 +474,10 @@ proptest! {
         let found = PowerModel::new(&machine).demand(&mv, &plan, Want::ALL).energy_j;
         let sampled = sample(&machine, &mv, &plan, 4_000);
         let scale = found.abs() + sampled.peak_w * plan.duration_s;
-        prop_assert!((found - sampled.energy_j).abs() <= 1e-6 * scale, "{found} {}", sampled.energy_j);
+        // Where weights cancel, what is left is rounding.
+        let rounding_j = 1e-12 * gross_w(&machine, plan.top_speed_mm_s) * plan.duration_s;
+        let off_j = (found - sampled.energy_j).abs();
+        prop_assert!(off_j <= 1e-6 * scale + rounding_j, "{found} {}", sampled.energy_j);
     }
 
     #[test]
@@ -486,6 +489,9 @@ proptest! {
         let found = PowerModel::new(&machine).demand(&mv, &plan, Want::ALL).energy_j;
         let sampled = sample(&machine, &mv, &plan, 1_500);
         let scale = found.abs() + sampled.peak_w * plan.duration_s;
-        prop_assert!((found - sampled.energy_j).abs() <= 1e-6 * scale, "{found} {}", sampled.energy_j);
+        // Where weights cancel, what is left is rounding.
+        let rounding_j = 1e-12 * gross_w(&machine, plan.top_speed_mm_s) * plan.duration_s;
+        let off_j = (found - sampled.energy_j).abs();
+        prop_assert!(off_j <= 1e-6 * scale + rounding_j, "{found} {}", sampled.energy_j);
     }
 }
