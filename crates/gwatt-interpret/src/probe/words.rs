@@ -10,7 +10,7 @@ use gwatt_motion::{MoveKind, Step};
 
 impl Interpreter<'_> {
     /// How often the program has asked whether a probe has touched, as far as it is not
-    /// known from the way itself: see [`ProbeWay`](super::ProbeWay).
+    /// known from the way itself: see [`ProbeWay`](crate::ProbeWay).
     #[must_use]
     pub fn probe_answers(&self) -> u32 {
         self.control.probe.answers()
