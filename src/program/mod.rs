@@ -19,10 +19,10 @@
 //! Figures are data for serde, under the names that the commands give them in JSON:
 //!
 //! ```
-//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # fn main() -> Result<(), gwatt::Error> {
 //! let (machine, _) = gwatt::Machine::load("three-axis")?;
 //! let report = gwatt::report("G21 G90\nG0 X100\nM30\n", &machine)?;
-//! let report = serde_json::to_value(&report)?;
+//! let report = serde_json::to_value(&report).expect("all keys are texts");
 //! assert_eq!(report["summary"]["peak_line"], 2);
 //! assert_eq!(report["blocks"][0]["move"], "rapid");
 //! # Ok(())
