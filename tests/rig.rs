@@ -108,6 +108,7 @@ fn controller() -> Controller {
             power_on_tolerance_mm: 0.0,
             power_on_mode: PathMode::ExactStop,
             exact_stop_word: None,
+            tool_change: None,
             rapid_uses_feed: false,
             ignored_g: Vec::new(),
             levels: Vec::new(),

@@ -3,7 +3,9 @@
 use super::ends::Places;
 use super::executor::Line;
 use super::line_key::{IN_A_FILE, LineKey};
-use crate::interpret::{Facts, FastPathState, FeedMode, KnobState, Motion, Move, MoveKind, Step};
+use crate::interpret::{
+    Facts, FastPathState, FeedMode, KnobState, Motion, Move, MoveKind, Step, TOOL_CHANGE_UNKNOWN,
+};
 use crate::limit::{Change, Outcome, Permit, Waiting};
 use crate::machine::{AxisId, Family, Lathe, Machine, PathMode, RapidJoint, RapidPath};
 use crate::motion::{CYCLE, TURNING_CYCLE};
@@ -310,6 +312,10 @@ impl Entry {
                 "program G98 (feed per minute) and F in it before the rapid"
             }
             PER_REVOLUTION => "program G94 (feed per minute) and F in it before the rapid",
+            TOOL_CHANGE_UNKNOWN => {
+                "the machine's builder decides which: tool_change = \"before-motion\" or \
+                 \"after-motion\" under [language] of the machine file"
+            }
             WITHOUT_STOP if language.g61 == PathMode::ExactStop => {
                 "program an exact stop (G61) before the block in front of it, or write the \
                  move as a feed by hand"
@@ -330,7 +336,7 @@ impl Entry {
                 "it may be skipped (block delete)",
             ),
             (
-                facts.boundary && facts.tool_words[1].is_none(),
+                facts.boundary && facts.tool_words.is_none(),
                 "it stops, changes the tool or ends the program",
             ),
             (facts.turns_knob, "it sets limits itself"),

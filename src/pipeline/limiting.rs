@@ -29,7 +29,7 @@ use super::writer::{Plan, Writer, Written};
 use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::limit::{Allowed, Depths, Limiter};
-use crate::machine::Machine;
+use crate::machine::{Machine, PathMode};
 use crate::power::{Lower, PowerModel};
 
 /// Pieces that may wait for the certifier.
@@ -375,7 +375,10 @@ impl Job<'_> {
                 rows.as_mut().map(|rows| as_sink(&mut **rows)),
             );
         };
-        let stopping = if machine.controller.stops_by_word() {
+        // Where blocks stop unless the program says otherwise, few programs need it: they are
+        // read again once it shows.
+        let blends = machine.controller.language.power_on_mode == PathMode::LookAhead;
+        let stopping = if blends && machine.controller.stops_by_word() {
             Some(whole.stopping(&mut input, source)?)
         } else {
             None

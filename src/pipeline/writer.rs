@@ -97,6 +97,8 @@ pub(super) struct Writer<'m, R, W> {
     waits: Waits,
     /// Where blocks are stopped by a word before rapids that become feeds.
     stopping: Option<Stopping>,
+    /// A rapid could become a feed if a block before it stopped, which is not known here.
+    stop_is_wanted: bool,
     /// Marks what stands for a rapid.
     comment: Option<Comment>,
     /// Decisions by line, for a program with calls or loops: nothing is written
@@ -152,20 +154,21 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             may_skip: false,
             waits: Waits::default(),
             stopping: None,
+            stop_is_wanted: false,
             comment,
             table,
         }
     }
 
-    /// Reads and writes the whole program; `deliver` takes the pieces. `None`
-    /// where lines are executed in another order than they stand in: such a
-    /// program is limited whole.
+    /// Reads and writes the whole program; `deliver` takes the pieces. `None` where it is to
+    /// be limited whole: lines are executed in another order than they stand in, or a block
+    /// that is written would have to stop.
     pub(super) fn run(
         mut self,
         deliver: &mut impl FnMut(&mut Batch) -> Result<(), Failure>,
     ) -> Result<Option<Written>, Failure> {
         while self.read_block()? {
-            if self.front.flows() {
+            if self.front.flows() || self.stop_is_wanted {
                 return Ok(None);
             }
             // Not before there is another block: what is added at the end of a
@@ -177,6 +180,9 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         }
         self.finish_moves();
         self.write_decided();
+        if self.stop_is_wanted {
+            return Ok(None);
+        }
         self.expect_spindle();
         if !self.front.interpreter().ended() {
             let batch = &mut self.batch;

@@ -9,8 +9,8 @@ use std::fmt::Write as _;
 
 use super::number::{decimal, rounded, with_blanks};
 use crate::edit::{Edit, apply};
-use crate::interpret::{Modal, Motion, Move, MoveKind, Step};
-use crate::machine::{ALL_AXES, AxisId, AxisValues};
+use crate::interpret::{Modal, Motion, Move, MoveKind, Step, TOOL_CHANGE_UNKNOWN};
+use crate::machine::{ALL_AXES, AxisId, AxisValues, ToolChange};
 use crate::source::split_line_end;
 use crate::syntax::{Block, Word};
 
@@ -41,6 +41,12 @@ pub struct Return<'a> {
     pub in_machine: bool,
     /// U, V and W are increments of X, Y and Z (lathes).
     pub increments: bool,
+    /// When the tool changes where M6 stands in it; `None`: not known.
+    pub tool_change: Option<ToolChange>,
+}
+
+fn is_tool_change(word: &Word) -> bool {
+    word.letter == b'M' && word.value == 6.0
 }
 
 impl Return<'_> {
@@ -103,6 +109,9 @@ impl Return<'_> {
             out.extend_from_slice(words.as_bytes());
             out.extend_from_slice(line_end);
         };
+        if self.tool_change.is_none() && self.changes_tool() {
+            return Err(TOOL_CHANGE_UNKNOWN);
+        }
         let mut last = None;
         for mv in self.moves() {
             if !mv.unknown_start.is_empty() {
@@ -152,7 +161,14 @@ impl Return<'_> {
     fn switching(&self) -> impl Iterator<Item = &Word> {
         let words = self.block.words.iter();
         let stops = |word: &Word| word.letter == b'M' && STOPS.contains(&word.value);
-        words.filter(move |word| matches!(word.letter, b'M' | b'S' | b'T') && !stops(word))
+        let tool_last = self.changes_tool() && self.tool_change == Some(ToolChange::AfterMotion);
+        let stays = move |word: &Word| tool_last && (word.letter == b'T' || is_tool_change(word));
+        let switches = |word: &Word| matches!(word.letter, b'M' | b'S' | b'T');
+        words.filter(move |word| switches(word) && !stops(word) && !stays(word))
+    }
+
+    fn changes_tool(&self) -> bool {
+        self.block.words.iter().any(is_tool_change)
     }
 
     /// A rapid to the end of a move, in absolute coordinates: where it begins may be known

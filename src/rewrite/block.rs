@@ -12,9 +12,9 @@ use super::rapid_mark::Comment;
 use super::state::{Mark, Written, motion_word};
 use super::turned::{InForce, Turned};
 use crate::edit::{Edit, apply};
-use crate::interpret::{Facts, KnobState, Motion};
+use crate::interpret::{Facts, KnobState, Motion, ToolWords};
 use crate::limit::Change;
-use crate::machine::{Family, Lathe, Machine};
+use crate::machine::{Family, Lathe, Machine, ToolChange};
 use crate::source::{Span, split_line_end};
 use crate::syntax::{Block, Word};
 
@@ -160,9 +160,7 @@ impl<'m> Rewriter<'m> {
             return true;
         }
         self.edits.clear();
-        if !view.change.is_none() {
-            self.change_tool_first(view, out);
-        }
+        let tool_after = self.take_tool_words(view, out);
         if view.rapids || view.feeds {
             self.write_pieces(view, out);
             self.turn_knobs(view.change, view, out);
@@ -202,37 +200,37 @@ impl<'m> Rewriter<'m> {
         if apart {
             self.back_to_revolutions(view, out);
         }
+        if let Some(words) = tool_after {
+            self.line_after(tool_line(&words, view).as_bytes(), view, out);
+        }
         if let Some(word) = stop {
-            self.stop_after(word, view, out);
+            self.line_after(word.of(view.text), view, out);
         }
         fine
     }
 
-    /// Words that select and change the tool, on a line of their own before what the block
-    /// does then.
-    fn change_tool_first(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) {
-        if view.facts.tool_words[1].is_none() {
-            return;
+    /// Takes the words that select and change the tool out of a block that is changed: they
+    /// stand on a line before it, or, which is returned, on one after it.
+    fn take_tool_words(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> Option<ToolWords> {
+        let words = view.facts.tool_words.filter(|_| !view.change.is_none())?;
+        let gone = without_tool(&words, view).into_iter().flatten();
+        self.edits.extend(gone.map(|gone| Edit::replace(gone, "")));
+        if words.order == ToolChange::AfterMotion {
+            return Some(words);
         }
-        let mut line = Vec::new();
-        for word in view.facts.tool_words.into_iter().flatten() {
-            line.push(String::from_utf8_lossy(word.of(view.text)).into_owned());
-        }
-        for gone in without_tool(view).into_iter().flatten() {
-            self.edits.push(Edit::replace(gone, ""));
-        }
-        self.insert_line(&line.join(" "), out);
+        self.insert_line(&tool_line(&words, view), out);
         self.stopped = false;
+        None
     }
 
-    /// The stop or end of a block whose motion was changed, on a line of its own: anyone who
-    /// looks at the state there finds the original's.
-    fn stop_after(&mut self, word: Span, view: &BlockView<'_>, out: &mut Vec<u8>) {
+    /// What a block whose motion was changed does once the axes stand, on a line of its own:
+    /// anyone who looks at the state there finds the original's.
+    fn line_after(&mut self, words: &[u8], view: &BlockView<'_>, out: &mut Vec<u8>) {
         self.complete_line(out);
         self.blend_again(out);
         self.restore(view.after, view.knobs, out);
         out.extend_from_slice(self.skip.as_bytes());
-        out.extend_from_slice(word.of(view.text));
+        out.extend_from_slice(words);
         let (_, line_end) = split_line_end(view.text);
         out.extend_from_slice(line_end);
         self.complete = !line_end.is_empty();
@@ -453,16 +451,27 @@ fn first_word<'v>(view: &BlockView<'v>) -> Option<&'v Word> {
     let facts = view.facts;
     words.find(|word| {
         let span = Some(word.span);
-        span != facts.stop_word && !facts.tool_words.contains(&span)
+        let of_tool = facts.tool_words.iter().flat_map(ToolWords::spans);
+        span != facts.stop_word && !of_tool.map(Some).any(|gone| gone == span)
     })
+}
+
+/// The words that select and change the tool, on a line of their own.
+fn tool_line(words: &ToolWords, view: &BlockView<'_>) -> String {
+    let mut line = String::new();
+    for word in words.spans() {
+        let gap = if line.is_empty() { "" } else { " " };
+        let _ = write!(line, "{gap}{}", String::from_utf8_lossy(word.of(view.text)));
+    }
+    line
 }
 
 /// The words that select and change the tool with the blanks that go with them; in one where
 /// both stand first.
-fn without_tool(view: &BlockView<'_>) -> [Option<Span>; 2] {
-    let [tool, change] = view.facts.tool_words;
-    let (Some(tool), Some(change)) = (tool, change) else {
-        return [tool, change].map(|word| word.map(|word| without(word, view)));
+fn without_tool(words: &ToolWords, view: &BlockView<'_>) -> [Option<Span>; 2] {
+    let change = words.change;
+    let Some(tool) = words.select else {
+        return [Some(without(change, view)), None];
     };
     let (one, other) = if tool.start < change.start {
         (tool, change)

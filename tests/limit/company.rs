@@ -134,7 +134,7 @@ fn what_stays() {
     refused(
         "fanuc",
         "G21 G90\nG0 X400 Y300 T1 M6\nM30\n",
-        "it stops, changes the tool or ends the program",
+        "it changes the tool, before or after its motion",
     );
     // Two words at which the program stops.
     refused(
@@ -197,7 +197,7 @@ fn reference_point_of_sinumerik() {
 }
 
 /// RS274/NGC changes the tool before all else but S: the words stand on a line before the
-/// motion then. Elsewhere the order is the builder's, and the block stays as it is.
+/// motion then.
 #[test]
 fn tools_that_are_changed_before_the_motion() {
     let program = "G21 G90\nN10 T2 M6 G0 X400 Y300\nG1 Z30 F400\nG0 M6 X0 T3 Y300\nM6 G1 X100 F30000\nG0 X110\nM2\n";
@@ -215,16 +215,6 @@ fn tools_that_are_changed_before_the_motion() {
     F30000
     M2
     ");
-    for controller in ["fanuc", "haas"] {
-        let refused = shop(controller, 520.0);
-        refused.put("a.nc", "G21 G90\nT2 M6 G0 X400 Y300\nM30\n");
-        let (code, _, errors) = refused.run("limit a.nc --allow feed -o out.nc");
-        assert_eq!(code, 1);
-        assert!(
-            errors.contains("it stops, changes the tool or ends the program"),
-            "{errors}"
-        );
-    }
     // With S the tool is changed in between.
     let refused = shop("linuxcnc", 520.0);
     refused.put(
@@ -234,4 +224,72 @@ fn tools_that_are_changed_before_the_motion() {
     let (code, _, errors) = refused.run("limit a.nc --allow feed -o out.nc");
     assert_eq!(code, 1);
     assert!(errors.contains("changes the tool"), "{errors}");
+}
+
+/// Elsewhere the order is the builder's: until the machine file says it, the block stays as
+/// it is, and the return too, whose way would be gone before the tool changes or after.
+#[test]
+fn tools_that_change_when_the_machine_file_says() {
+    let shop = |controller: &str, order: &str| {
+        let order = match order {
+            "" => String::new(),
+            order => format!("[language]\ntool_change = \"{order}\"\n"),
+        };
+        let rest = format!("[path]\nrapid = \"linear\"\n{order}[offsets]\nG54 = {{}}\n");
+        Shop::mill(
+            controller,
+            "peak_power_w = 520",
+            &rest,
+            "reference_mm = 300",
+        )
+    };
+    let program = "G21 G90 G54\nG1 Z30 F400\nG0 X400 Y290 M6 T2\nG91 G28 X0 Y0 T3 M6\nM30\n";
+    for controller in ["fanuc", "haas"] {
+        let refused = shop(controller, "");
+        refused.put("a.nc", program);
+        let (code, _, errors) = refused.run("limit a.nc --allow feed -o out.nc");
+        assert_eq!(code, 1, "{errors}");
+        assert_eq!(
+            errors
+                .matches("it changes the tool, before or after its motion")
+                .count(),
+            3,
+            "{errors}"
+        );
+        let help = "the machine's builder decides which: tool_change = \"before-motion\" or \
+                    \"after-motion\" under [language] of the machine file";
+        assert!(errors.contains(help), "{errors}");
+    }
+    assert_snapshot!(limited(&shop("fanuc", "before-motion"), program), @r"
+    G21 G90 G54
+    G1 Z30 F400
+    T2 M6
+    G4 P1
+    G9 G1 X400 Y290 F22889
+    G0 F400
+    T3 M6
+    G4 P1
+    G9 G1 X300. Y300. F28296
+    G91 G28 X0 Y0
+    G0 F400
+    M30
+    ");
+    assert_snapshot!(limited(&shop("fanuc", "after-motion"), program), @r"
+    G21 G90 G54
+    G1 Z30 F400
+    G4 P1
+    G9 G1 X400 Y290 F22889
+    G0 F400
+    T2 M6
+    G9 G1 X300. Y300. F28296
+    G0 F400
+    G91 G28 X0 Y0 T3 M6
+    M30
+    ");
+    // S may come before the change or after it.
+    let refused = shop("fanuc", "after-motion");
+    refused.put("a.nc", &program.replace("M6 T2", "M6 T2 S500"));
+    let (code, _, errors) = refused.run("limit a.nc --allow feed -o out.nc");
+    assert_eq!(code, 1);
+    assert!(errors.contains("it stops, changes the tool"), "{errors}");
 }

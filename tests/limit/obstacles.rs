@@ -134,7 +134,7 @@ fn blocks_that_are_not_touched() {
     untouchable(RIG, "/G0 X400\n", "it may be skipped (block delete)");
     untouchable(
         RIG,
-        "G0 X400 M6 T1\n",
+        "G0 X400 M0 M30\n",
         "it stops, changes the tool or ends the program",
     );
     untouchable(

@@ -366,6 +366,9 @@ impl Control<'_> {
         if !run.facts.boundary && run.facts.stop_word.is_none() {
             return;
         }
+        if run.words.m.iter().any(|(number, _)| *number == 60) {
+            self.change_tool_at_end(run);
+        }
         for index in 0..run.words.m.len() {
             let number = run.words.m[index].0;
             let Some(kind @ (ActionKind::Stop | ActionKind::End)) = self.m_kind(number) else {

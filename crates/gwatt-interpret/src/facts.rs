@@ -1,7 +1,29 @@
 //! What a block is, besides what it does.
 
+use gwatt_machine::ToolChange;
 use gwatt_syntax::Word;
 use gwatt_syntax::source::Span;
+
+/// The words of a block that select and change the tool.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ToolWords {
+    /// T, if it stands in the same block.
+    pub select: Option<Span>,
+    /// M6.
+    pub change: Span,
+    /// Whether the tool changes before the block's motion or after it.
+    pub order: ToolChange,
+}
+
+impl ToolWords {
+    /// These words: T, M6.
+    pub fn spans(&self) -> impl Iterator<Item = Span> {
+        self.select.into_iter().chain([self.change])
+    }
+}
+
+/// Why a block with M6 keeps its words where nothing says when the tool changes.
+pub const TOOL_CHANGE_UNKNOWN: &str = "it changes the tool, before or after its motion";
 
 /// What the rewriter must know of a block besides its moves.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -40,9 +62,9 @@ pub struct Facts {
     /// It changes the tool, saves or restores the state or does more that shows it: the
     /// modal state must be the original's, and no word of the block is changed.
     pub boundary: bool,
-    /// Its words that select and change the tool before it moves, where it does no more than
-    /// that besides: they may stand on a line before it.
-    pub tool_words: [Option<Span>; 2],
+    /// Its words that select and change the tool, where it does no more than that besides its
+    /// motion: they may stand on a line of their own.
+    pub tool_words: Option<ToolWords>,
     /// It selects a tool: the modal state before it must be the original's.
     pub selects_tool: bool,
     /// Its word that stops or ends the program once the axes stand: the modal state before

@@ -86,7 +86,7 @@ mod written_out;
 
 pub use code::Motion;
 pub use execute::Interpreter;
-pub use facts::Facts;
+pub use facts::{Facts, TOOL_CHANGE_UNKNOWN, ToolWords};
 pub use fast_path_state::FastPathState;
 pub use flow::{Flow, Limits, Place};
 pub use given::GivenVariable;

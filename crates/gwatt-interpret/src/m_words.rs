@@ -1,7 +1,8 @@
 //! M words, S and T: actions, and the loads that they switch.
 
 use super::control::{Control, Run};
-use gwatt_machine::Family;
+use super::facts::{TOOL_CHANGE_UNKNOWN, ToolWords};
+use gwatt_machine::{Family, ToolChange};
 use gwatt_motion::ActionKind;
 use gwatt_syntax::Word;
 use gwatt_syntax::source::Span;
@@ -28,7 +29,9 @@ impl Control<'_> {
             && !other
         {
             self.select_tool(tool, run);
-            run.act(ActionKind::ToolSelect, tool);
+            if !self.changes_tool_at_end(run) {
+                run.act(ActionKind::ToolSelect, tool);
+            }
             run.facts.selects_tool = true;
         }
     }
@@ -120,7 +123,11 @@ impl Control<'_> {
                     self.special.turn_spindle(number);
                     self.note_spindle(run);
                 }
-                ActionKind::ToolChange => self.load_tool(number, span, run),
+                ActionKind::ToolChange => {
+                    self.load_tool(number, span, run);
+                    self.change_tool(span, run);
+                    continue;
+                }
                 ActionKind::Other if self.is_siemens() && self.is_ignored(number) => {}
                 ActionKind::Other if self.is_siemens() => {
                     let message =
@@ -131,12 +138,7 @@ impl Control<'_> {
                 ActionKind::Other => self.other_word(number, span, run),
                 _ => {}
             }
-            if number == 60 && !run.facts.boundary && self.changes_tool_first(run) {
-                let tool = run.block.words.iter().find(|word| word.letter == b'T');
-                run.facts.tool_words = [tool.map(|word| word.span), Some(span)];
-            }
             if !matches!(kind, ActionKind::Stop | ActionKind::End) {
-                run.facts.boundary |= kind == ActionKind::ToolChange;
                 run.act(kind, value);
             } else if matches!(number, 0 | 10 | 20 | 300) && run.facts.stop_word.is_none() {
                 run.facts.stop_word = Some(span);
@@ -146,15 +148,49 @@ impl Control<'_> {
         }
     }
 
-    /// Whether M6 comes before all other words of a block but T: that is documented for
-    /// RS274/NGC, in which S comes before it ("Order of Execution").
-    fn changes_tool_first(&self, run: &Run<'_, '_>) -> bool {
-        let others = run.words.m.iter().filter(|(number, _)| *number != 60);
-        let plain = others.clone().all(|(number, _)| matches!(number, 30..=90));
-        self.machine.controller.language.family == Family::Rs274
-            && plain
-            && run.words.m.len() == others.count() + 1
-            && !run.block.words.iter().any(|word| word.letter == b'S')
+    /// M6: the tool changes before the motion of its block or after it; where that is not
+    /// known, at either place.
+    fn change_tool(&mut self, span: Span, run: &mut Run<'_, '_>) {
+        let order = self.machine.controller.language.tool_change;
+        let first = !run.facts.boundary;
+        run.facts.boundary = true;
+        match order {
+            None if run.words.has_axes() => {
+                run.facts.fixed = Some(TOOL_CHANGE_UNKNOWN);
+                run.act(ActionKind::ToolChangeInMotion, 6.0);
+                return;
+            }
+            Some(order) if first && changes_nothing_else(order, run) => {
+                let select = run.block.words.iter().find(|word| word.letter == b'T');
+                run.facts.tool_words = Some(ToolWords {
+                    select: select.map(|word| word.span),
+                    change: span,
+                    order,
+                });
+            }
+            _ => {}
+        }
+        if order != Some(ToolChange::AfterMotion) {
+            run.act(ActionKind::ToolChange, 6.0);
+        }
+    }
+
+    /// Whether the block changes the tool once the axes stand.
+    fn changes_tool_at_end(&self, run: &Run<'_, '_>) -> bool {
+        self.machine.controller.language.tool_change == Some(ToolChange::AfterMotion)
+            && run.words.m.iter().any(|(number, _)| *number == 60)
+    }
+
+    /// A tool that changes once the axes stand, or perhaps then.
+    pub(super) fn change_tool_at_end(&self, run: &mut Run<'_, '_>) {
+        if self.changes_tool_at_end(run) {
+            if run.facts.selects_tool {
+                run.act(ActionKind::ToolSelect, f64::from(self.tools.selected));
+            }
+            run.act(ActionKind::ToolChange, 6.0);
+        } else if run.facts.fixed == Some(TOOL_CHANGE_UNKNOWN) {
+            run.act(ActionKind::ToolChangeInMotion, 6.0);
+        }
     }
 
     /// Switches loads on. Those that go off do so after the block's moves,
@@ -170,4 +206,14 @@ impl Control<'_> {
             }
         }
     }
+}
+
+/// Whether M6 may stand on a line of its own before or after the motion of its block, with T.
+/// RS274/NGC has S before it ("Order of Execution").
+fn changes_nothing_else(order: ToolChange, run: &Run<'_, '_>) -> bool {
+    let mut others = run.words.m.iter().filter(|(number, _)| *number != 60);
+    let once = run.words.m.len() == others.clone().count() + 1;
+    let plain = |number: u16| order == ToolChange::BeforeMotion && matches!(number, 30..=90);
+    once && others.all(|(number, _)| plain(*number))
+        && !run.block.words.iter().any(|word| word.letter == b'S')
 }

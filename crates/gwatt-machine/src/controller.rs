@@ -67,6 +67,9 @@ pub struct Language {
     pub power_on_tolerance_mm: f64,
     /// The G word (number × 10) that lets its block end at rest in a mode that blends.
     pub exact_stop_word: Option<u16>,
+    /// When the tool changes where M6 stands in a block that moves; `None`: not known, the
+    /// builder of the machine decides.
+    pub tool_change: Option<ToolChange>,
     /// Whether G0 obeys F like G1.
     pub rapid_uses_feed: bool,
     /// Further G words (number × 10, rounded) without motion that are passed over.
@@ -96,6 +99,15 @@ pub struct Language {
     pub kept_variables: Vec<[u32; 2]>,
     /// What Fanuc, Haas and their relatives have besides.
     pub dialect: Dialect,
+}
+
+/// When the tool changes where M6 stands in a block that moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ToolChange {
+    /// Before the axes move.
+    BeforeMotion,
+    /// Once the axes stand where the block ends.
+    AfterMotion,
 }
 
 /// What the controls of Fanuc, Haas and their relatives have besides ISO 6983.
@@ -131,13 +143,12 @@ pub struct Dialect {
 }
 
 impl Language {
-    /// Whether G61 puts blocks in exact stop and G64 ends that, on a control that blends from
-    /// the beginning and has no word for one block.
+    /// Whether G61 puts blocks in exact stop and G64 ends that, on a control that has no word
+    /// for one block.
     #[must_use]
     pub fn stops_by_mode(&self) -> bool {
         self.family == Family::Iso
             && self.exact_stop_word.is_none()
-            && self.power_on_mode == PathMode::LookAhead
             && self.g61 == PathMode::ExactStop
             && self.g64 == PathMode::LookAhead
     }

@@ -268,6 +268,9 @@ pub enum ActionKind {
     ToolSelect,
     /// M6.
     ToolChange,
+    /// M6 in a block that moves, where it is not known whether the tool changes before or
+    /// after the motion: it stands at either place.
+    ToolChangeInMotion,
     /// M7, M8, M9.
     Coolant,
     /// M0, M1, M60.

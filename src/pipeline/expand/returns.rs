@@ -62,6 +62,7 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before, machine: &Machine) ->
             modal: line.interpreter.modal(),
             in_machine: facts.machine_coordinates,
             increments: language.dialect.lathe == Some(Lathe::A),
+            tool_change: language.tool_change,
         };
         if language.family == Family::Siemens {
             write_in_machine(&block, moving, machine)

@@ -47,6 +47,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
                 self.unsplit.stays(mv, reason, entry.text_of(mv));
             }
             if let Some(obstacle) = outcome.obstacle.take() {
+                self.stop_is_wanted |= self.wants_stop(mv);
                 self.reasons.refuse(mv, &obstacle, entry.text_of(mv));
             }
             // What a block gets, all its moves get, but not its dwell.

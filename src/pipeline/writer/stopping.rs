@@ -3,7 +3,9 @@
 use std::io::{Read, Seek, Write};
 
 use super::Writer;
+use crate::interpret::{Move, MoveKind};
 use crate::limit::Change;
+use crate::machine::PathMode;
 use crate::pipeline::entry::Entry;
 use crate::pipeline::stop_before::Stopping;
 
@@ -19,6 +21,14 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
         if let Some(stopping) = &self.stopping {
             entry.stop_before = stopping.may_stop_before(entry.key);
         }
+    }
+
+    /// Whether a rapid that cannot be lowered might be, were the block before it known.
+    pub(super) fn wants_stop(&self, mv: &Move) -> bool {
+        self.stopping.is_none()
+            && mv.kind == MoveKind::Rapid
+            && mv.path_mode == PathMode::LookAhead
+            && self.machine.controller.stops_by_word()
     }
 
     /// The change of a block with the word, where a rapid after it becomes a feed.

@@ -118,6 +118,8 @@ pub(crate) struct LanguageTable {
     pub(crate) power_on_feed_mm_min: Option<Positive>,
     /// What F means at power-on; default per minute.
     pub(crate) feed: Option<FeedName>,
+    /// When the tool changes where M6 stands in a block that moves; default: not known.
+    pub(crate) tool_change: Option<ToolChangeName>,
     /// G12 and G13 mill circular pockets, as on a Haas; default false.
     pub(crate) circular_pocket: Option<bool>,
     /// Whether G28 without axes moves all of them; default false.
@@ -157,6 +159,14 @@ pub(crate) enum LeadName {
     AtEnd,
     Perpendicular,
     Corner,
+}
+
+/// When the tool changes where M6 stands in a block that moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum ToolChangeName {
+    BeforeMotion,
+    AfterMotion,
 }
 
 /// What a number without a decimal point means.

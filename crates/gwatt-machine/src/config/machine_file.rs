@@ -12,7 +12,9 @@ pub(crate) use super::axis_table::{
     AxisTable, CorrectionTable, ForcePointTable, KindName, ResponseTable, RootTable,
     TorquePointTable,
 };
-use super::controller_file::{CompensationTable, DistanceName, PointName, UnitsName};
+use super::controller_file::{
+    CompensationTable, DistanceName, PointName, ToolChangeName, UnitsName,
+};
 use super::levels::LevelsTable;
 use super::look_ahead::LookAheadTable;
 use super::offsets::OffsetsTable;
@@ -178,6 +180,9 @@ pub(crate) struct OwnLanguageTable {
     /// The F in force at power-on, in mm/min (SINUMERIK: setting data 42110): where moves come
     /// before any F, none above it is written for them.
     pub(crate) power_on_feed_mm_min: Option<Positive>,
+    /// Whether the tool changes before or after the motion of a block that has M6 in it, which
+    /// the builder of the machine decides on many controls.
+    pub(crate) tool_change: Option<ToolChangeName>,
     /// Whether G83 and G87 of a lathe come out to R after each peck (Fanuc: parameter 5101
     /// bit RTR).
     pub(crate) pecks_return_to_r: Option<bool>,

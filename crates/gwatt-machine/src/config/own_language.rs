@@ -19,6 +19,10 @@ pub(crate) fn take(
     let dialect = &mut language.dialect;
     dialect.point = own.decimal_point.map(profile::point).or(dialect.point);
     dialect.diameter = own.diameter.unwrap_or(dialect.diameter);
+    language.tool_change = own
+        .tool_change
+        .map(profile::tool_change)
+        .or(language.tool_change);
     if let Some(returns) = own.pecks_return_to_r {
         language.pecks_return_to_r = returns;
     }

@@ -3,7 +3,8 @@
 use super::controller_file::{
     ArcRuleName, ArgumentName, CompensationTable, ControllerFile, CornerName, DistanceName,
     DwellTable, FamilyName, FeedName, KnobTable, LanguageTable, LatheName, LeadName, PlannerTable,
-    PointName, RapidJointName, RapidKnobName, SpindleWaitName, TargetName, UnitName, UnitsName,
+    PointName, RapidJointName, RapidKnobName, SpindleWaitName, TargetName, ToolChangeName,
+    UnitName, UnitsName,
 };
 use super::findings::Findings;
 use super::look_ahead::look_ahead;
@@ -15,7 +16,7 @@ use super::word;
 use crate::axis::AxisId;
 use crate::controller::{
     ArcRule, CompensationCorner, CompensationLead, Controller, CutterCompensation, Dialect, Family,
-    Language, Lathe, Planner, Point, RapidJoint, RapidKnob, RapidPath, SpindleWait,
+    Language, Lathe, Planner, Point, RapidJoint, RapidKnob, RapidPath, SpindleWait, ToolChange,
 };
 use crate::knob::{Knob, KnobArgument, KnobTarget, KnobUnit};
 use crate::queue::{MESSAGE, MESSAGES, Queue, QueueWord};
@@ -86,6 +87,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
             .as_ref()
             .map_or(0.0, |tolerance| tolerance.value),
         exact_stop_word: exact_stop_word(findings, table),
+        tool_change: table.tool_change.map(tool_change),
         rapid_uses_feed: table.rapid_uses_feed.unwrap_or(false),
         ignored_g,
         ignored_m,
@@ -170,6 +172,14 @@ fn dialect(table: &LanguageTable) -> Dialect {
     };
     dialect.active = dialect != Dialect::default();
     dialect
+}
+
+/// When the tool changes, of its name.
+pub(crate) fn tool_change(name: ToolChangeName) -> ToolChange {
+    match name {
+        ToolChangeName::BeforeMotion => ToolChange::BeforeMotion,
+        ToolChangeName::AfterMotion => ToolChange::AfterMotion,
+    }
 }
 
 /// What a number without a point means, of its name.

@@ -24,6 +24,7 @@ impl SpindleBus<'_> {
             | ActionKind::ToolLoaded
             | ActionKind::ToolSelect
             | ActionKind::ToolChange
+            | ActionKind::ToolChangeInMotion
             | ActionKind::Stop
             | ActionKind::End => true,
             ActionKind::Other => {
@@ -82,7 +83,7 @@ impl SpindleBus<'_> {
                 self.cutting.select(value);
                 return;
             }
-            ActionKind::ToolChange => {
+            ActionKind::ToolChange | ActionKind::ToolChangeInMotion => {
                 // The spindle stops for it, on most machines.
                 self.states[0].lose(&self.motor);
                 if let Some(slower) = &mut self.slower {
