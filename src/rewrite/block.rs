@@ -1,13 +1,16 @@
 //! One block at a time: its edits, and the lines before it.
 
 mod pieces;
+mod tool_words;
 mod words;
 
 use std::fmt::Write as _;
 
 pub use pieces::PieceWords;
 
-use super::number::{Style, feed_again, with_blanks};
+use tool_words::{tool_line, without, without_tool};
+
+use super::number::{Style, feed_again};
 use super::rapid_mark::Comment;
 use super::state::{Mark, Written, motion_word};
 use super::turned::{InForce, Turned};
@@ -15,7 +18,7 @@ use crate::edit::{Edit, apply};
 use crate::interpret::{Facts, KnobState, Motion, ToolWords};
 use crate::limit::Change;
 use crate::machine::{Family, Lathe, Machine, ToolChange};
-use crate::source::{Span, split_line_end};
+use crate::source::split_line_end;
 use crate::syntax::{Block, Word};
 
 /// Exact stop at the end of each move, on controls without a word for one block.
@@ -177,7 +180,8 @@ impl<'m> Rewriter<'m> {
         }
         let stop = facts.stop_word.filter(|_| !view.change.is_none());
         if let Some(word) = stop {
-            self.edits.push(Edit::replace(without(word, view), ""));
+            self.edits
+                .push(Edit::replace(without(word, view.text, view.block), ""));
         }
         if view.change.exact_stop || view.change.stop {
             self.exact_stop(view, out);
@@ -201,7 +205,7 @@ impl<'m> Rewriter<'m> {
             self.back_to_revolutions(view, out);
         }
         if let Some(words) = tool_after {
-            self.line_after(tool_line(&words, view).as_bytes(), view, out);
+            self.line_after(tool_line(&words, view.text).as_bytes(), view, out);
         }
         if let Some(word) = stop {
             self.line_after(word.of(view.text), view, out);
@@ -213,12 +217,14 @@ impl<'m> Rewriter<'m> {
     /// stand on a line before it, or, which is returned, on one after it.
     fn take_tool_words(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> Option<ToolWords> {
         let words = view.facts.tool_words.filter(|_| !view.change.is_none())?;
-        let gone = without_tool(&words, view).into_iter().flatten();
+        let gone = without_tool(&words, view.text, view.block)
+            .into_iter()
+            .flatten();
         self.edits.extend(gone.map(|gone| Edit::replace(gone, "")));
         if words.order == ToolChange::AfterMotion {
             return Some(words);
         }
-        self.insert_line(&tool_line(&words, view), out);
+        self.insert_line(&tool_line(&words, view.text), out);
         self.stopped = false;
         None
     }
@@ -454,50 +460,4 @@ fn first_word<'v>(view: &BlockView<'v>) -> Option<&'v Word> {
         let of_tool = facts.tool_words.iter().flat_map(ToolWords::spans);
         span != facts.stop_word && !of_tool.map(Some).any(|gone| gone == span)
     })
-}
-
-/// The words that select and change the tool, on a line of their own.
-fn tool_line(words: &ToolWords, view: &BlockView<'_>) -> String {
-    let mut line = String::new();
-    for word in words.spans() {
-        let gap = if line.is_empty() { "" } else { " " };
-        let _ = write!(line, "{gap}{}", String::from_utf8_lossy(word.of(view.text)));
-    }
-    line
-}
-
-/// The words that select and change the tool with the blanks that go with them; in one where
-/// both stand first.
-fn without_tool(words: &ToolWords, view: &BlockView<'_>) -> [Option<Span>; 2] {
-    let change = words.change;
-    let Some(tool) = words.select else {
-        return [Some(without(change, view)), None];
-    };
-    let (one, other) = if tool.start < change.start {
-        (tool, change)
-    } else {
-        (change, tool)
-    };
-    let gone = without(one, view);
-    if gone.end < other.start || gone.start < one.start {
-        return [Some(gone), Some(without(other, view))];
-    }
-    let after = view.text.get(other.end as usize..).unwrap_or_default();
-    let blanks = after.iter().take_while(|byte| matches!(byte, b' ' | b'\t'));
-    let end = other.end + blanks.count() as u32;
-    [Some(Span { end, ..gone }), None]
-}
-
-/// A word with the blanks that go with it.
-fn without(word: Span, view: &BlockView<'_>) -> Span {
-    let first = view.block.words.first().map(|first| first.span);
-    if first != Some(word) {
-        return with_blanks(view.text, word);
-    }
-    let after = view.text.get(word.end as usize..).unwrap_or_default();
-    let blanks = after.iter().take_while(|byte| matches!(byte, b' ' | b'\t'));
-    Span {
-        end: word.end + blanks.count() as u32,
-        ..word
-    }
 }

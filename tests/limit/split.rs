@@ -1,5 +1,6 @@
 //! Blocks in several pieces of one line, with stepped accelerations.
 
+mod best;
 mod lines;
 mod physical;
 mod printers;
