@@ -216,7 +216,7 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
             }
             None => limit_text(text, machine, paths, how, &mut output, &mut None)?,
         };
-        expanded.trace(&mut next);
+        expanded.trace(&program, &mut next);
         last = Some(next);
     }
     Ok(match last {

@@ -1,17 +1,23 @@
 //! Lines of a program with cycles written out, as those of the original.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
 use super::Expanded;
 use crate::pipeline::{LimitSummary, Restart, RestartRows, Row, RowSink};
+use crate::source::{Span, lines, split_line_end};
 
 impl Expanded {
     /// Gives what is said of a limited program the lines of the original, and counts the
     /// lines that were written in another way.
-    pub(in crate::pipeline) fn trace(&self, summary: &mut LimitSummary) {
+    pub(in crate::pipeline) fn trace(&self, original: &[u8], summary: &mut LimitSummary) {
         let here = |line: &mut u64| *line = self.origin(*line);
+        let texts = self.rewritten(original, summary);
         for reason in summary.reasons.iter_mut().filter(|it| it.file.is_none()) {
+            if let Some(text) = texts.get(&reason.line) {
+                let whole = Span::new(0, text.len());
+                *reason = reason.clone().at(reason.line, whole, text);
+            }
             here(&mut reason.line);
         }
         let notes = summary.before.notes.iter_mut();
@@ -27,6 +33,9 @@ impl Expanded {
         here(&mut after.regen_line);
         for unfit in after.unfit.iter_mut().chain(&mut after.worst) {
             if unfit.file.is_empty() {
+                if let Some(text) = texts.get(&unfit.line) {
+                    unfit.text = text.to_vec();
+                }
                 here(&mut unfit.line);
             }
         }
@@ -44,6 +53,25 @@ impl Expanded {
 }
 
 impl Expanded {
+    /// The text in the original of the lines that something is said of and that stand
+    /// otherwise in this program.
+    fn rewritten<'t>(&self, original: &'t [u8], summary: &LimitSummary) -> BTreeMap<u64, &'t [u8]> {
+        let reasons = summary.reasons.iter().filter(|it| it.file.is_none());
+        let after = &summary.after;
+        let unfit = after.unfit.iter().chain(&after.worst);
+        let unfit = unfit.filter(|it| it.file.is_empty());
+        let named = reasons.map(|it| it.line).chain(unfit.map(|it| it.line));
+        let named: BTreeSet<u64> = named.filter(|line| *line > 0).collect();
+        let origins: BTreeSet<u64> = named.iter().map(|line| self.origin(*line)).collect();
+        let written = numbered(&self.text, &named);
+        let original = numbered(original, &origins);
+        let texts = named.into_iter().filter_map(|line| {
+            let text = *original.get(&self.origin(line))?;
+            (written.get(&line) != Some(&text)).then_some((line, text))
+        });
+        texts.collect()
+    }
+
     /// Gives a row of the program itself the line of the original.
     pub(in crate::pipeline) fn trace_row(&self, row: &mut Row) {
         row.line = self.origin(row.line);
@@ -138,4 +166,13 @@ impl Restart for Traced<'_> {
         self.seen.clear();
         self.rows.restart()
     }
+}
+
+/// The lines with these numbers, from 1, without their ends.
+fn numbered<'t>(text: &'t [u8], numbers: &BTreeSet<u64>) -> BTreeMap<u64, &'t [u8]> {
+    let numbered = (1..).zip(lines(text));
+    let wanted = numbered.filter(|(number, _)| numbers.contains(number));
+    wanted
+        .map(|(number, line)| (number, split_line_end(line).0))
+        .collect()
 }

@@ -242,10 +242,10 @@ impl<'a> Job<'a> {
             }
             if let Some(program) = self.programs.get(number) {
                 as_its_own(&mut summary, &program.name);
-            }
-            if let Some(Some(expanded)) = self.expanded.get(number) {
-                expanded.trace(&mut summary);
-                summary.edited_lines = edited_lines;
+                if let Some(Some(expanded)) = self.expanded.get(number) {
+                    expanded.trace(&program.text, &mut summary);
+                    summary.edited_lines = edited_lines;
+                }
             }
             programs.push(summary);
         }
