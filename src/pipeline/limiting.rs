@@ -4,36 +4,28 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read, Seek, Write};
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::thread;
 
 use super::analyze::judge;
-use super::batch::Batch;
-use super::certify::{Certified, Certifier};
-use super::conclusion::{conclude, holds_one_way};
-use super::derate::{LAST_ROUND, aim_lower, lower_further, missed_narrowly};
+use super::conclusion::holds_one_way;
+use super::derate::{aim_lower, lower_further, missed_narrowly};
 use super::executor::read_whole;
 use super::expand::{NOT_WRITTEN_OUT, OriginalRows, Traced, Way, expand, in_fixed_blocks};
-use super::looped_program::LoopedProgram;
 use super::pace::sooner;
 use super::pause::limit_waiting;
 use super::preset_notes::{NO_PRESET, NOT_SET};
 use super::readable::readable;
+use super::rounds::{Job, restart};
 use super::row::Detail;
 use super::stops;
 use super::strategy::{check_strategy, trusting};
 use super::unmarked::unmarked;
 use super::ways::{has_ways, ways};
-use super::worker::no_thread;
-use super::writer::{Plan, Writer, Written};
-use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink, Summary};
+use super::writer::Plan;
+use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::limit::{Allowed, Depths, Limiter};
-use crate::machine::{Machine, PathMode};
-use crate::power::{Lower, PowerModel};
-
-/// Pieces that may wait for the certifier.
-const BATCHES: usize = 2;
+use crate::limit::Depths;
+use crate::machine::Machine;
+use crate::power::Lower;
 
 /// Reads a program, writes one that fits to `output`, and certifies it.
 ///
@@ -251,50 +243,17 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
             input.rewind().map_err(Failure::Input)?;
             restart(&mut output, rows)?;
         }
-        let mut depths = start;
-        let mut rungs = Lower::default();
-        let mut ladder = None;
-        loop {
-            let job = Job {
-                machine,
-                target,
-                rungs: &rungs,
-                paths,
-                how,
-                depths: depths.clone(),
-                plan,
-            };
-            let (mut written, mut certified) = job.run(&mut input, &mut output, rows)?;
-            places.set(std::mem::take(&mut written.places));
-            if let Some(paces) = depths.paces_mut() {
-                let over = certified.deeper.iter().map(|line| line.place);
-                paces.learn(std::mem::take(&mut certified.paced), over);
-            }
-            learned.set(depths.paces().cloned());
-            if certified.deeper.is_empty() {
-                // What the bound over all overrides leaves open is looked at in further
-                // runs, which write the same.
-                let ladder = ladder.get_or_insert_with(|| certified.summary.ladder(machine));
-                ladder.take(&certified.summary.lower);
-                let worth = certified.reasons.count == 0 && certified.summary.fits_at_largest();
-                rungs = if worth {
-                    ladder.ask()
-                } else {
-                    Lower::default()
-                };
-                if rungs.is_empty() {
-                    certified.summary.settle(ladder);
-                    return Ok(conclude(machine, target, paths, how, written, certified));
-                }
-            } else if !depths.deepen(&certified.deeper) {
-                let mut stopped = conclude(machine, target, paths, how, written, certified);
-                stopped.reasons.push(last_round(&depths, how.allowed));
-                return Ok(stopped);
-            }
-            // The changes made neighbours exceed the limit: planned again with more.
-            input.rewind().map_err(Failure::Input)?;
-            restart(&mut output, rows)?;
-        }
+        let job = Job {
+            machine,
+            target,
+            paths,
+            how,
+            plan,
+        };
+        let found = job.rounds(start, &mut input, &mut output, rows, again)?;
+        places.set(found.places);
+        learned.set(found.paces);
+        Ok(found.summary)
     };
     let stands = how.allowed.pause.then_some(Plan::NEVER);
     let first = attempt_with(machine, stands, Depths::default(), false)?;
@@ -317,177 +276,4 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
         return lower_further(machine, first, &mut |target| attempt(target, None, true));
     }
     limit_waiting(machine, first, &places.take(), &mut attempt)
-}
-
-/// Why there is no further round.
-pub(super) fn last_round(depths: &Depths, allowed: Allowed) -> Diagnostic {
-    let rounds = depths.rounds();
-    Diagnostic::error(
-        LAST_ROUND,
-        format!("blocks exceed the limit next to others that were lowered, after {rounds} rounds"),
-    )
-    .help(allowed.else_helps())
-}
-
-/// One round of limiting.
-struct Job<'a> {
-    machine: &'a Machine,
-    /// The same with the limits that are aimed at.
-    target: &'a Machine,
-    /// The machine with its knobs where they are looked at as well.
-    rungs: &'a Lower,
-    /// How the program is read, on each path through it.
-    paths: &'a [Options],
-    how: LimitOptions,
-    depths: Depths,
-    /// Where the program waits, if it may.
-    plan: Option<Plan>,
-}
-
-impl Job<'_> {
-    /// Writes and certifies the program.
-    fn run<R: Read + Seek + Send, W: Write + Restart + Send>(
-        self,
-        mut input: R,
-        mut output: W,
-        rows: &mut Option<&mut dyn RestartRows>,
-    ) -> Result<(Written, Certified), Failure> {
-        let Self {
-            machine,
-            target,
-            rungs,
-            paths,
-            how,
-            depths,
-            plan,
-        } = self;
-        let whole = LoopedProgram {
-            machine,
-            target,
-            how,
-        };
-        let source = (paths, &depths, rungs);
-        let [options] = paths else {
-            return whole.limit(
-                input,
-                output,
-                source,
-                rows.as_mut().map(|rows| as_sink(&mut **rows)),
-            );
-        };
-        // Where blocks stop unless the program says otherwise, few programs need it: they are
-        // read again once it shows.
-        let blends = machine.controller.language.power_on_mode == PathMode::LookAhead;
-        let stopping = if blends && machine.controller.stops_by_word() {
-            Some(whole.stopping(&mut input, source)?)
-        } else {
-            None
-        };
-        let detail = Detail::of(rows.as_deref());
-        let sink = rows.as_mut().map(|rows| as_sink(&mut **rows));
-        let mut certifier = Certifier::new(machine, rungs, options, sink);
-        let limiter = Limiter::new(target, how, depths.clone());
-        let writer = Writer::new(
-            &mut input,
-            target,
-            options,
-            limiter,
-            detail,
-            &mut output,
-            None,
-            PowerModel::new(machine),
-        )
-        .pausing(plan)
-        .stopping(stopping);
-        let streamed = if options.threads > 1 {
-            side_by_side(writer, certifier)?
-        } else {
-            let written = writer.run(&mut |batch| certifier.take(batch))?;
-            match written {
-                Some(written) => Some((written, certifier.finish()?)),
-                None => None,
-            }
-        };
-        if let Some(done) = streamed {
-            return Ok(done);
-        }
-        restart(&mut output, rows)?;
-        whole.limit(
-            input,
-            output,
-            source,
-            rows.as_mut().map(|rows| as_sink(&mut **rows)),
-        )
-    }
-}
-
-/// Forgets what was written.
-fn restart(
-    output: &mut impl Restart,
-    rows: &mut Option<&mut dyn RestartRows>,
-) -> Result<(), Failure> {
-    output.restart().map_err(Failure::Output)?;
-    match rows {
-        Some(rows) => rows.restart().map_err(Failure::Output),
-        None => Ok(()),
-    }
-}
-
-pub(super) fn as_sink<'r>(rows: &'r mut (dyn RestartRows + '_)) -> &'r mut (dyn RowSink + 'r) {
-    rows
-}
-
-/// Writes in this thread and certifies in another.
-fn side_by_side<R: Read + Seek + Send, W: Write + Send>(
-    writer: Writer<'_, R, W>,
-    certifier: Certifier<'_, '_>,
-) -> Result<Option<(Written, Certified)>, Failure> {
-    thread::scope(|scope| {
-        let (sender, receiver) = sync_channel(BATCHES);
-        let (back, empty) = sync_channel(BATCHES + 2);
-        let handle = thread::Builder::new()
-            .spawn_scoped(scope, move || certify_all(certifier, receiver, &back))
-            .map_err(|error| no_thread(&error))?;
-        let written = writer.run(&mut |batch| send(batch, &sender, &empty));
-        drop(sender);
-        // A panic of the certifier is a fault of gwatt: it goes on here.
-        let certified = handle
-            .join()
-            .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        match (written, certified) {
-            // A certifier that failed has stopped the writer: its failure is
-            // the cause. A refusal of the program comes from the writer alone.
-            (Err(refused @ Failure::Refused { .. }), _) => Err(refused),
-            (written, certified) => {
-                let certified = certified?;
-                Ok(written?.map(|written| (written, certified)))
-            }
-        }
-    })
-}
-
-/// The certifier's side of the channel.
-fn certify_all(
-    mut certifier: Certifier<'_, '_>,
-    receiver: Receiver<Batch>,
-    back: &SyncSender<Batch>,
-) -> Result<Certified, Failure> {
-    for mut batch in receiver {
-        certifier.take(&mut batch)?;
-        // A full channel of empty buffers only means one more allocation.
-        let _ = back.try_send(batch);
-    }
-    certifier.finish()
-}
-
-fn send(
-    batch: &mut Batch,
-    sender: &SyncSender<Batch>,
-    empty: &Receiver<Batch>,
-) -> Result<(), Failure> {
-    let full = std::mem::replace(batch, empty.try_recv().unwrap_or_default());
-    // The certifier has stopped: its own failure is the one to report.
-    sender
-        .send(full)
-        .map_err(|_| Failure::Output(std::io::ErrorKind::BrokenPipe.into()))
 }

@@ -35,6 +35,7 @@ mod price;
 mod readable;
 mod worker;
 mod restart;
+mod rounds;
 mod row;
 mod schedule;
 mod series;

@@ -1,0 +1,280 @@
+//! Rounds of limiting: the program is written and handed to the certifier piece by piece, so
+//! that nothing of it is held for long, until no change makes a neighbour exceed the limit.
+
+use std::io::{Read, Seek, Write};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread;
+
+use super::batch::Batch;
+use super::certify::{Certified, Certifier};
+use super::conclusion::conclude;
+use super::derate::LAST_ROUND;
+use super::looped_program::LoopedProgram;
+use super::row::Detail;
+use super::worker::no_thread;
+use super::writer::{Plan, Writer, Written};
+use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink};
+use crate::diagnostic::Diagnostic;
+use crate::limit::{Allowed, Depths, Limiter, Paces};
+use crate::machine::{Machine, PathMode};
+use crate::power::{Lower, PowerModel};
+
+/// Pieces that may wait for the certifier.
+const BATCHES: usize = 2;
+
+/// Why there is no further round.
+pub(super) fn last_round(depths: &Depths, allowed: Allowed) -> Diagnostic {
+    let rounds = depths.rounds();
+    Diagnostic::error(
+        LAST_ROUND,
+        format!("blocks exceed the limit next to others that were lowered, after {rounds} rounds"),
+    )
+    .help(allowed.else_helps())
+}
+
+/// One way of limiting, in as many rounds as it takes.
+#[derive(Clone, Copy)]
+pub(super) struct Job<'a> {
+    pub(super) machine: &'a Machine,
+    /// The same with the limits that are aimed at.
+    pub(super) target: &'a Machine,
+    /// How the program is read, on each path through it.
+    pub(super) paths: &'a [Options],
+    pub(super) how: LimitOptions,
+    /// Where the program waits, if it may.
+    pub(super) plan: Option<Plan>,
+}
+
+/// What came of it.
+pub(super) struct Attempt {
+    pub(super) summary: LimitSummary,
+    /// Lines before which the program may wait.
+    pub(super) places: Vec<u64>,
+    /// What was learned of the paces of lines.
+    pub(super) paces: Option<Paces>,
+}
+
+impl Job<'_> {
+    /// Limits in rounds: where changes make neighbours exceed the limit, all is planned again
+    /// with more, and what the bound over all overrides leaves open is looked at in further
+    /// runs, which write the same.
+    ///
+    /// Rows cost far more than all else: of several rounds the last one alone has them, and
+    /// of a first attempt the first, which most often is the last.
+    pub(super) fn rounds<R: Read + Seek + Send, W: Write + Restart + Send>(
+        &self,
+        mut depths: Depths,
+        mut input: R,
+        mut output: W,
+        rows: &mut Option<&mut dyn RestartRows>,
+        again: bool,
+    ) -> Result<Attempt, Failure> {
+        let mut rungs = Lower::default();
+        let mut ladder = None;
+        let mut has_rows = !again || rows.is_none();
+        loop {
+            let used = depths.clone();
+            let (mut written, mut certified) = if has_rows {
+                self.run(&rungs, &used, &mut input, &mut output, rows)?
+            } else {
+                self.run(&rungs, &used, &mut input, &mut output, &mut None)?
+            };
+            let places = std::mem::take(&mut written.places);
+            if let Some(paces) = depths.paces_mut() {
+                let over = certified.deeper.iter().map(|line| line.place);
+                paces.learn(std::mem::take(&mut certified.paced), over);
+            }
+            let mut asked = Lower::default();
+            let mut stuck = false;
+            let more = if certified.deeper.is_empty() {
+                let ladder = ladder.get_or_insert_with(|| certified.summary.ladder(self.machine));
+                ladder.take(&certified.summary.lower);
+                if certified.reasons.count == 0 && certified.summary.fits_at_largest() {
+                    asked = ladder.ask();
+                }
+                !asked.is_empty()
+            } else {
+                stuck = !depths.deepen(&certified.deeper);
+                !stuck
+            };
+            if more || !has_rows {
+                input.rewind().map_err(Failure::Input)?;
+                restart(&mut output, rows)?;
+            }
+            if more {
+                rungs = asked;
+                has_rows = rows.is_none();
+                continue;
+            }
+            if !has_rows {
+                (written, certified) = self.run(&rungs, &used, &mut input, &mut output, rows)?;
+            }
+            if let Some(ladder) = ladder.as_mut().filter(|_| !stuck) {
+                certified.summary.settle(ladder);
+            }
+            let Self {
+                machine,
+                target,
+                paths,
+                how,
+                ..
+            } = *self;
+            let mut summary = conclude(machine, target, paths, how, written, certified);
+            if stuck {
+                summary.reasons.push(last_round(&depths, how.allowed));
+            }
+            let paces = depths.paces().cloned();
+            return Ok(Attempt {
+                summary,
+                places,
+                paces,
+            });
+        }
+    }
+
+    /// Writes and certifies the program.
+    fn run<R: Read + Seek + Send, W: Write + Restart + Send>(
+        &self,
+        rungs: &Lower,
+        depths: &Depths,
+        mut input: R,
+        mut output: W,
+        rows: &mut Option<&mut dyn RestartRows>,
+    ) -> Result<(Written, Certified), Failure> {
+        let Self {
+            machine,
+            target,
+            paths,
+            how,
+            plan,
+        } = *self;
+        let whole = LoopedProgram {
+            machine,
+            target,
+            how,
+        };
+        let source = (paths, depths, rungs);
+        let [options] = paths else {
+            return whole.limit(
+                input,
+                output,
+                source,
+                rows.as_mut().map(|rows| as_sink(&mut **rows)),
+            );
+        };
+        // Where blocks stop unless the program says otherwise, few programs need it: they are
+        // read again once it shows.
+        let blends = machine.controller.language.power_on_mode == PathMode::LookAhead;
+        let stopping = if blends && machine.controller.stops_by_word() {
+            Some(whole.stopping(&mut input, source)?)
+        } else {
+            None
+        };
+        let detail = Detail::of(rows.as_deref());
+        let sink = rows.as_mut().map(|rows| as_sink(&mut **rows));
+        let mut certifier = Certifier::new(machine, rungs, options, sink);
+        let limiter = Limiter::new(target, how, depths.clone());
+        let writer = Writer::new(
+            &mut input,
+            target,
+            options,
+            limiter,
+            detail,
+            &mut output,
+            None,
+            PowerModel::new(machine),
+        )
+        .pausing(plan)
+        .stopping(stopping);
+        let streamed = if options.threads > 1 {
+            side_by_side(writer, certifier)?
+        } else {
+            let written = writer.run(&mut |batch| certifier.take(batch))?;
+            match written {
+                Some(written) => Some((written, certifier.finish()?)),
+                None => None,
+            }
+        };
+        if let Some(done) = streamed {
+            return Ok(done);
+        }
+        restart(&mut output, rows)?;
+        whole.limit(
+            input,
+            output,
+            source,
+            rows.as_mut().map(|rows| as_sink(&mut **rows)),
+        )
+    }
+}
+
+/// Forgets what was written.
+pub(super) fn restart(
+    output: &mut impl Restart,
+    rows: &mut Option<&mut dyn RestartRows>,
+) -> Result<(), Failure> {
+    output.restart().map_err(Failure::Output)?;
+    match rows {
+        Some(rows) => rows.restart().map_err(Failure::Output),
+        None => Ok(()),
+    }
+}
+
+pub(super) fn as_sink<'r>(rows: &'r mut (dyn RestartRows + '_)) -> &'r mut (dyn RowSink + 'r) {
+    rows
+}
+
+/// Writes in this thread and certifies in another.
+fn side_by_side<R: Read + Seek + Send, W: Write + Send>(
+    writer: Writer<'_, R, W>,
+    certifier: Certifier<'_, '_>,
+) -> Result<Option<(Written, Certified)>, Failure> {
+    thread::scope(|scope| {
+        let (sender, receiver) = sync_channel(BATCHES);
+        let (back, empty) = sync_channel(BATCHES + 2);
+        let handle = thread::Builder::new()
+            .spawn_scoped(scope, move || certify_all(certifier, receiver, &back))
+            .map_err(|error| no_thread(&error))?;
+        let written = writer.run(&mut |batch| send(batch, &sender, &empty));
+        drop(sender);
+        // A panic of the certifier is a fault of gwatt: it goes on here.
+        let certified = handle
+            .join()
+            .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        match (written, certified) {
+            // A certifier that failed has stopped the writer: its failure is
+            // the cause. A refusal of the program comes from the writer alone.
+            (Err(refused @ Failure::Refused { .. }), _) => Err(refused),
+            (written, certified) => {
+                let certified = certified?;
+                Ok(written?.map(|written| (written, certified)))
+            }
+        }
+    })
+}
+
+/// The certifier's side of the channel.
+fn certify_all(
+    mut certifier: Certifier<'_, '_>,
+    receiver: Receiver<Batch>,
+    back: &SyncSender<Batch>,
+) -> Result<Certified, Failure> {
+    for mut batch in receiver {
+        certifier.take(&mut batch)?;
+        // A full channel of empty buffers only means one more allocation.
+        let _ = back.try_send(batch);
+    }
+    certifier.finish()
+}
+
+fn send(
+    batch: &mut Batch,
+    sender: &SyncSender<Batch>,
+    empty: &Receiver<Batch>,
+) -> Result<(), Failure> {
+    let full = std::mem::replace(batch, empty.try_recv().unwrap_or_default());
+    // The certifier has stopped: its own failure is the one to report.
+    sender
+        .send(full)
+        .map_err(|_| Failure::Output(std::io::ErrorKind::BrokenPipe.into()))
+}
