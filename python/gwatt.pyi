@@ -11,6 +11,25 @@ from typing import Any, Literal, TypeAlias, TypedDict, final
 
 from typing_extensions import Unpack
 
+__all__ = [
+    "Diagnostic",
+    "DoesNotFit",
+    "Error",
+    "MachineError",
+    "Refused",
+    "Unsuitable",
+    "Limited",
+    "limit",
+    "Machine",
+    "machines",
+    "Report",
+    "check",
+    "report",
+    "series",
+    "Summary",
+    "__version__",
+]
+
 __version__: str
 
 _Program: TypeAlias = str | bytes | bytearray | PathLike[str]
