@@ -18,6 +18,10 @@ bless:
 doc:
     RUSTDOCFLAGS="-D warnings" cargo doc --no-deps
 
+# The documentation as a book, in target/book; needs mdbook
+book:
+    docs/book.sh target/book
+
 bench *args:
     cargo bench {{args}}
 

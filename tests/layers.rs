@@ -71,9 +71,10 @@ fn dependencies(manifest: &str, dev: bool) -> Vec<String> {
     names
 }
 
-/// The Rust files of all crates, tests of the root excluded.
+/// The Rust files of all crates and of the Python package, tests of the root excluded.
 fn sources() -> Vec<PathBuf> {
     let folders = CRATES.iter().map(|(name, _)| folder_of(name).join("src"));
+    let folders = folders.chain([root().join("python/src")]);
     folders.flat_map(|folder| rust_files(&folder)).collect()
 }
 

@@ -4,9 +4,11 @@
 
 mod accuracy;
 mod servo;
+mod book;
 mod bus;
 mod layers;
 mod conformance;
+mod controls;
 mod converter;
 mod corners;
 mod expressions;

@@ -16,6 +16,7 @@ fn pages() -> Vec<PathBuf> {
     let mut pages: Vec<PathBuf> = files.map(|entry| entry.expect("an entry").path()).collect();
     pages.push(root.join("README.md"));
     pages.retain(|page| page.extension().is_some_and(|it| it == "md"));
+    pages.retain(|page| !page.ends_with("SUMMARY.md"));
     pages.sort();
     pages
 }

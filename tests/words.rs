@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::layers::root;
 
 /// What is looked through, from the root on.
-const PLACES: [&str; 12] = [
+const PLACES: [&str; 13] = [
     "ARCHITECTURE.md",
     "CHANGELOG.md",
     "CONTRIBUTING.md",
@@ -18,6 +18,7 @@ const PLACES: [&str; 12] = [
     "examples",
     "fuzz/fuzz_targets",
     "machine-configs",
+    "python",
     "src",
     "tests",
 ];

@@ -76,7 +76,7 @@ pub use quantity::{duration, power};
 pub use record::COLUMNS;
 #[cfg(feature = "sarif")]
 pub use sarif::sarif;
-pub use series::SeriesRows;
+pub use series::{SeriesColumns, SeriesRows};
 pub use size::{size_chart, size_csv, size_json, size_text, size_verdict};
 pub use spindle::{SpindleRows, spindle_text};
 pub use text::{axis_table, check_text, limit_text, partial_text, set_text};

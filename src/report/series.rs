@@ -16,27 +16,23 @@ const SPINDLE: [&str; 5] = [
     "cutting_power_w",
 ];
 
-/// Writes the rows of a series below a header.
-#[derive(Debug)]
-pub struct SeriesRows<W: Write> {
-    out: csv::Writer<W>,
+/// The columns of a series over time, for any format: their names, and the values of a row.
+#[derive(Debug, Clone)]
+pub struct SeriesColumns {
+    names: Vec<String>,
     axes: Vec<usize>,
     spindle: bool,
     /// Whether each converter has columns of its own.
     several: bool,
-    program: &'static str,
-    values: Vec<Figure>,
 }
 
-impl<W: Write> SeriesRows<W> {
-    /// Writes the header for a machine to `out`; `program` is the first column's
-    /// value until it is changed.
-    ///
-    /// # Errors
-    /// Those of `out`.
-    pub fn new(out: W, machine: &Machine, program: &'static str) -> io::Result<Self> {
-        let mut header = vec!["program".to_owned(), "time_s".into(), "line".into()];
+impl SeriesColumns {
+    /// Those of a machine: of each axis speed, acceleration, force or torque and power, of the
+    /// spindle what it does, and what the converters deliver and take back.
+    #[must_use]
+    pub fn new(machine: &Machine) -> Self {
         let axes: Vec<usize> = machine.axis_set.iter().collect();
+        let mut names = Vec::new();
         for &axis in &axes {
             let letter = ALL_AXES.get(axis).map_or('?', |id| id.letter() as char);
             let name = letter.to_ascii_lowercase();
@@ -47,7 +43,7 @@ impl<W: Write> SeriesRows<W> {
             } else {
                 ("mm", "force_n")
             };
-            header.extend([
+            names.extend([
                 format!("{name}_velocity_{length}_s"),
                 format!("{name}_accel_{length}_s2"),
                 format!("{name}_{force}"),
@@ -56,28 +52,85 @@ impl<W: Write> SeriesRows<W> {
         }
         let spindle = machine.spindle.is_some();
         if spindle {
-            header.extend(SPINDLE.map(str::to_owned));
+            names.extend(SPINDLE.map(str::to_owned));
         }
-        header.extend(["bus_w".to_owned(), "regen_w".into()]);
+        names.extend(["bus_w".to_owned(), "regen_w".into()]);
         let several = machine.converters.len() > 1;
         if several {
             for converter in &machine.converters {
                 let name = &converter.name;
-                header.extend([format!("{name}_bus_w"), format!("{name}_regen_w")]);
+                names.extend([format!("{name}_bus_w"), format!("{name}_regen_w")]);
             }
         }
+        Self {
+            names,
+            axes,
+            spindle,
+            several,
+        }
+    }
+
+    /// Their names, units as suffixes.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Appends the values of an instant to `values`, one for each name.
+    pub fn append(&self, instant: &Instant, values: &mut Vec<f64>) {
+        for &axis in &self.axes {
+            let own = instant.axes.get(axis).copied().unwrap_or_default();
+            values.extend([own.velocity_mm_s, own.accel_mm_s2, own.force_n, own.power_w]);
+        }
+        if self.spindle {
+            let own = &instant.spindle;
+            values.extend([
+                own.speed_rpm,
+                own.accel_rpm_s,
+                own.torque_nm,
+                own.power_w,
+                own.cutting_w,
+            ]);
+        }
+        values.extend([&instant.bus_w, &instant.regen_w].map(|powers| powers.iter().sum::<f64>()));
+        if self.several {
+            for (bus_w, regen_w) in instant.bus_w.iter().zip(&instant.regen_w) {
+                values.extend([*bus_w, *regen_w]);
+            }
+        }
+    }
+}
+
+/// Writes the rows of a series below a header.
+#[derive(Debug)]
+pub struct SeriesRows<W: Write> {
+    out: csv::Writer<W>,
+    columns: SeriesColumns,
+    program: &'static str,
+    values: Vec<f64>,
+    figures: Vec<Figure>,
+}
+
+impl<W: Write> SeriesRows<W> {
+    /// Writes the header for a machine to `out`; `program` is the first column's
+    /// value until it is changed.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn new(out: W, machine: &Machine, program: &'static str) -> io::Result<Self> {
+        let columns = SeriesColumns::new(machine);
         let mut out = csv::WriterBuilder::new()
             .has_headers(false)
             .terminator(csv::Terminator::CRLF)
             .from_writer(out);
-        out.write_record(header)?;
+        let first = ["program", "time_s", "line"].into_iter();
+        out.write_record(first.chain(columns.names.iter().map(String::as_str)))?;
         Ok(Self {
             out,
-            axes,
-            spindle,
-            several,
+            columns,
             program,
             values: Vec::new(),
+            figures: Vec::new(),
         })
     }
 
@@ -100,34 +153,12 @@ impl<W: Write> SeriesRows<W> {
 impl<W: Write> SeriesSink for SeriesRows<W> {
     fn row(&mut self, time_s: f64, line: u64, instant: &Instant) -> io::Result<()> {
         self.values.clear();
-        for &axis in &self.axes {
-            let Some(own) = instant.axes.get(axis) else {
-                continue;
-            };
-            self.values
-                .extend([own.velocity_mm_s, own.accel_mm_s2, own.force_n, own.power_w].map(Figure));
-        }
-        if self.spindle {
-            let own = &instant.spindle;
-            let values = [
-                own.speed_rpm,
-                own.accel_rpm_s,
-                own.torque_nm,
-                own.power_w,
-                own.cutting_w,
-            ];
-            self.values.extend(values.map(Figure));
-        }
-        let sums = [&instant.bus_w, &instant.regen_w].map(|powers| powers.iter().sum());
-        self.values.extend(sums.map(Figure));
-        if self.several {
-            for (bus_w, regen_w) in instant.bus_w.iter().zip(&instant.regen_w) {
-                self.values.extend([*bus_w, *regen_w].map(Figure));
-            }
-        }
+        self.columns.append(instant, &mut self.values);
+        self.figures.clear();
+        self.figures.extend(self.values.iter().copied().map(Figure));
         let time = Position(time_s);
         Ok(self
             .out
-            .serialize((self.program, time, line, &self.values))?)
+            .serialize((self.program, time, line, &self.figures))?)
     }
 }

@@ -324,38 +324,56 @@ fn settings_lie_next_to_the_programs() {
     }
 }
 
-/// The recipe for a Slurm array: what its tasks write together are all programs.
+/// The recipes for arrays of tasks: what these write together are all programs.
 #[cfg(unix)]
-#[test]
-fn tasks_of_an_array_check_all_programs() {
+fn all_tasks(command: &[&str], number: impl Fn(u32) -> Vec<(&'static str, String)>) {
     let shop = shop();
-    let recipe = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/fleet/slurm.sh");
     let binary = std::path::Path::new(env!("CARGO_BIN_EXE_gwatt"));
-    for task in ["1", "2", "3"] {
+    let path = format!("{}:/usr/bin:/bin", binary.parent().unwrap().display());
+    for task in 1..=3 {
         let ran = std::process::Command::new("sh")
-            .arg(recipe)
+            .args(command)
             .current_dir(shop.path())
-            .env(
-                "PATH",
-                format!("{}:/usr/bin:/bin", binary.parent().unwrap().display()),
-            )
+            .env("PATH", &path)
             .envs([
                 ("MACHINE", "three-axis"),
                 ("FOLDER", "jobs"),
                 ("RESULTS", "results"),
             ])
-            .envs([
-                ("SLURM_ARRAY_TASK_ID", task),
-                ("SLURM_ARRAY_TASK_COUNT", "3"),
-            ])
+            .envs(number(task))
             .output()
             .unwrap();
-        assert!(
-            ran.status.success(),
-            "{}",
-            String::from_utf8_lossy(&ran.stderr)
-        );
+        let said = String::from_utf8_lossy(&ran.stderr);
+        assert!(ran.status.success(), "{said}");
     }
     let results = ["1", "2", "3"].map(|task| shop.get(&format!("results/{task}.jsonl")));
     assert_eq!(results.concat().lines().count(), 4);
+}
+
+#[cfg(unix)]
+#[test]
+fn tasks_of_an_array_check_all_programs() {
+    let recipe = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/fleet/slurm.sh");
+    all_tasks(&[recipe], |task| {
+        let count = ("SLURM_ARRAY_TASK_COUNT", "3".to_owned());
+        vec![("SLURM_ARRAY_TASK_ID", task.to_string()), count]
+    });
+}
+
+/// What the containers of an indexed job run, whose numbers begin with 0.
+#[cfg(unix)]
+#[test]
+fn pods_of_an_indexed_job_check_all_programs() {
+    let recipe = include_str!("../../examples/fleet/kubernetes.yaml");
+    let (_, script) = recipe.split_once("            - |\n").unwrap();
+    let script: Vec<&str> = script
+        .lines()
+        .map_while(|line| line.strip_prefix("              "))
+        .collect();
+    assert_eq!(script.len(), 4, "{script:?}");
+    assert!(recipe.contains("command: [\"sh\", \"-euc\"]"));
+    all_tasks(&["-euc", &script.join("\n")], |task| {
+        let index = ("JOB_COMPLETION_INDEX", (task - 1).to_string());
+        vec![index, ("SHARES", "3".to_owned())]
+    });
 }

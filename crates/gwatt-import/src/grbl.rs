@@ -18,9 +18,14 @@ struct Setting<'t> {
     place: Place<'t>,
 }
 
-/// The setting in a line: `$120=500.000`, with anything before and after it.
+/// The setting in a line: `$120=500.000`, with anything before and after it; none in a comment.
 pub(crate) fn setting(line: &str) -> Option<(u16, &str, &str)> {
     let start = line.find('$')?;
+    let before = line.get(..start)?;
+    let is_open = before.matches('(').count() > before.matches(')').count();
+    if before.contains(';') || is_open {
+        return None;
+    }
     let rest = line.get(start + 1..)?;
     let digits = rest.bytes().take_while(u8::is_ascii_digit).count();
     let number = rest.get(..digits)?.parse().ok()?;
@@ -40,17 +45,7 @@ pub(crate) fn setting(line: &str) -> Option<(u16, &str, &str)> {
 /// Reads the settings.
 pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
     let mut found = Found::new("grbl", "Machine under grbl", Build::Screws);
-    let mut settings: BTreeMap<u16, Setting<'_>> = BTreeMap::new();
-    for (_, place) in job.places() {
-        if let Some((number, value, whole)) = setting(place.line()) {
-            let found = Setting {
-                text: value,
-                whole,
-                place: place.of(value),
-            };
-            settings.insert(number, found);
-        }
-    }
+    let settings = settings(job, log);
     // X Y Z A B C U V, in the order of their numbers.
     for (index, id) in (0u16..8).zip(ALL_AXES) {
         axis(&mut found, log, &settings, index, id);
@@ -63,6 +58,42 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
         found.spindle_rpm = Some(Figure::new(rpm, setting.place.source(setting.whole)));
     }
     found
+}
+
+/// All settings; of those that stand more than once the last, as the control has it.
+fn settings<'t>(job: &'t Job, log: &mut Log) -> BTreeMap<u16, Setting<'t>> {
+    let mut settings: BTreeMap<u16, Setting<'t>> = BTreeMap::new();
+    let mut is_reported = false;
+    for (_, place) in job.places() {
+        let Some((number, value, whole)) = setting(place.line()) else {
+            continue;
+        };
+        let found = Setting {
+            text: value,
+            whole,
+            place: place.of(value),
+        };
+        let here = found.place.clone();
+        let earlier = settings.insert(number, found);
+        let Some(earlier) = earlier.filter(|it| is_of_motion(number) && it.text != value) else {
+            continue;
+        };
+        if !is_reported {
+            is_reported = true;
+            let other = earlier.place.source(earlier.whole);
+            log.warning(
+                &here,
+                format!("{other} says otherwise: of each setting the last one counts"),
+                "give the settings of one machine, as `$$` prints them",
+            );
+        }
+    }
+    settings
+}
+
+/// Whether a setting says how axes move.
+fn is_of_motion(number: u16) -> bool {
+    matches!(number, 11 | 12 | 110..=117 | 120..=127)
 }
 
 fn axis(

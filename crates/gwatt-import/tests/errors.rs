@@ -173,3 +173,28 @@ fn what_is_left_out_is_said() {
       |          ^
     ");
 }
+
+/// A file of notes about several machines, as people keep them, and a file in which settings are
+/// commented out.
+#[test]
+fn settings_of_grbl_that_stand_twice_or_in_comments() {
+    let notes = "Small mill:\n$10=3\n$110=400.000 (x max rate)\n$120=100.000\n\
+                 Router:\n$10=1\n$110=1500.000\n$120=90.000\n";
+    let found = imported(notes);
+    assert_snapshot!(render(&found.warnings), @r"
+    settings:7, warning: $110=400.000 (line 3) says otherwise: of each setting the last one counts / give the settings of one machine, as `$$` prints them
+      | $110=1500.000
+      |      ^^^^^^^^
+    ");
+    let toml = found.toml;
+    assert!(toml.contains("rapid_mm_min = 1500          # $110=1500.000 (line 7)"));
+    let twice = "$110=800\n$110=800\n$120=50\n";
+    assert_eq!(render(&imported(twice).warnings), "");
+    let comments = "$110=800\n$120=50\n; $110=900\n(was $120=70)\n(12:30) $121=60\n$111=700\n";
+    let found = imported(comments);
+    assert_eq!(render(&found.warnings), "");
+    assert!(
+        found.toml.contains("# $110=800 (line 1)") && found.toml.contains("# $120=50 (line 2)")
+    );
+    assert!(found.toml.contains("# $121=60 (line 5)"));
+}
