@@ -316,8 +316,11 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
     let bands = shown_up_to(data, &found.response);
     let mut roots = roots_of(&transfer, bands, std);
     if data.from_command {
-        for root in roots.iter_mut().flatten() {
-            root.runs_between_samples(data.period_s);
+        for list in &mut roots {
+            list.retain(Root::rings);
+            for root in list {
+                root.runs_between_samples(data.period_s);
+            }
         }
     }
     let [zeros, unclear_zeros, poles] = roots;

@@ -66,7 +66,16 @@ pub(super) fn roots_of(
     [zeros, unclear_zeros, poles]
 }
 
+/// Damping below which a root after a command is the load's: what is damped more is a loop's,
+/// or stands for dead time.
+const RINGS: f64 = 0.5;
+
 impl Root {
+    /// Whether it rings, as the load does and a loop does not.
+    pub(super) fn rings(&self) -> bool {
+        self.damping.value.abs() < RINGS
+    }
+
     /// Widens errors for what a recording of a command does not say: whether it is held
     /// between samples or runs on. Its strength differs by `(ωT)²/24` then, which tilts by
     /// `(ωT)²/12` at the root and moves that by as much of its damping.
