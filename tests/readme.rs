@@ -153,7 +153,7 @@ fn a_drive_is_put_into_service() {
         assert!(ran.status.success(), "{line}: {said}");
     }
     let machine = fs::read_to_string(shop.path().join("mill.toml")).expect("a machine");
-    assert!(machine.contains("efficiency = 0.96"), "{machine}");
+    assert!(machine.contains("efficiency = 0.95"), "{machine}");
     let signal = fs::read_to_string(shop.path().join("signal.csv")).expect("a signal");
     assert_eq!(signal.lines().count(), 6001);
 }

@@ -107,6 +107,7 @@ def strokes(acceleration, speeds, stroke_m):
 
 def record(name, seconds, rate_hz, current_of, column="Iq"):
     """A table as drives export it: semicolons, decimal commas, no times."""
+    random.seed(1)
     drive, every = Drive(), round(1 / (rate_hz * STEP_S))
     with open(name, "w", encoding="utf-8", newline="\n") as file:
         file.write(f"Trace of axis X\n{column} [A];Enc\n")
@@ -142,6 +143,7 @@ def shaken(signal_nm, rate_hz, speed_m_s):
 
 def log_power(name, motion, seconds):
     """Speed, acceleration and power every 4 ms, as means."""
+    random.seed(1)
     drive, every = Drive(), 80
     with open(name, "w", encoding="utf-8", newline="\n") as file:
         file.write("x_velocity_mm_s,x_accel_mm_s2,x_power_w\n")
@@ -160,9 +162,6 @@ def log_power(name, motion, seconds):
 
 def main():
     folder = sys.argv[1]
-    random.seed(1)
-    motion, seconds = strokes(5.0, [0.3, 0.3, 0.4, 0.4], 0.08)
-    record(f"{folder}/hard.txt", seconds, 500, moved(motion), "Iset")
     speeds = [0.2, 0.2, 0.05, 0.05, 0.3, 0.3, 0.1, 0.1, 0.25, 0.25]
     motion, seconds = strokes(1.5, speeds, 0.08)
     record(f"{folder}/moves.txt", seconds, 500, moved(motion))

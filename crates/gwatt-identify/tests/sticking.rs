@@ -97,7 +97,7 @@ fn sticking_makes_no_modes() {
         })
         .collect();
     let [acceleration, angle] = sticking(&torque);
-    let steps: Vec<f64> = angle.iter().map(|x| 1e-5 * (x / 1e-5).round()).collect();
+    let steps: Vec<f64> = angle.iter().map(|x| 1e-5 * libm::round(x / 1e-5)).collect();
     for motion in [
         signal("accel", Quantity::Acceleration, Kind::Rotary, acceleration),
         signal("position", Quantity::Position, Kind::Rotary, steps),
