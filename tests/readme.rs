@@ -126,3 +126,35 @@ fn the_picture_is_true() {
         "gwatt draws another picture: put it into docs/pocket.svg"
     );
 }
+
+/// What docs/commissioning.md writes, one command after another as on the page.
+#[test]
+fn a_drive_is_put_into_service() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let shop = tempfile::tempdir().expect("a folder");
+    let recordings = Path::new("examples/commissioning");
+    fs::create_dir_all(shop.path().join(recordings)).expect("a folder");
+    for name in ["moves.txt", "power.csv"] {
+        let name = recordings.join(name);
+        fs::copy(root.join(&name), shop.path().join(&name)).expect("a copy");
+    }
+    let page = fs::read_to_string(root.join("docs/commissioning.md")).expect("a page");
+    let commands: Vec<&str> = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("    gwatt "))
+        .collect();
+    assert_eq!(commands.len(), 5);
+    for line in commands {
+        let ran = Command::new(env!("CARGO_BIN_EXE_gwatt"))
+            .args(line.split(' '))
+            .current_dir(shop.path())
+            .output()
+            .expect("gwatt runs");
+        let said = String::from_utf8_lossy(&ran.stderr);
+        assert!(ran.status.success(), "{line}: {said}");
+    }
+    let machine = fs::read_to_string(shop.path().join("mill.toml")).expect("a machine");
+    assert!(machine.contains("efficiency = 0.95"), "{machine}");
+    let signal = fs::read_to_string(shop.path().join("signal.csv")).expect("a signal");
+    assert_eq!(signal.lines().count(), 6001);
+}

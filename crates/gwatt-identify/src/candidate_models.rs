@@ -138,7 +138,7 @@ pub fn neighbours(
 }
 
 /// A pole and a zero so near, as a share, may stand for nothing next to one another.
-const CANCELLED_SHARE: f64 = 0.2;
+pub const CANCELLED_SHARE: f64 = 0.2;
 
 /// Without a pole and a zero that are as near to each other as that.
 #[must_use]
@@ -255,7 +255,7 @@ fn reflected(from: &TransferFunction, given: Given, period_s: f64) -> Vec<Transf
 
 /// What swings of a model, up to where it shows: the rest often stands for nothing
 /// but noise.
-fn lean(from: &TransferFunction, band_rad_s: f64) -> TransferFunction {
+pub fn lean(from: &TransferFunction, band_rad_s: f64) -> TransferFunction {
     const BEYOND: f64 = 1.2;
     let swings = |factor: &&Factor| {
         matches!(factor, Factor::Pair { damping, omega_rad_s }

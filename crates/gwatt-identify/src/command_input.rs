@@ -27,7 +27,11 @@ impl CommandInput {
     pub fn spline(positions: &[f64], measured: Measured, period_s: f64) -> Self {
         let plain = Self::held(positions, measured, period_s);
         match measured {
-            Measured::Position => plain,
+            Measured::Position => Self {
+                values: parabolas(&plain.values),
+                runs: Measured::Position,
+                late_s: 1.5 * period_s,
+            },
             Measured::Velocity => Self {
                 values: spline(&plain.values),
                 runs: Measured::Position,
@@ -71,10 +75,20 @@ fn differences(x: &[f64], period_s: f64) -> Vec<f64> {
     pairs.map(|(x, before)| (x - before) / period_s).collect()
 }
 
+/// The coefficients of the parabolic B-splines that go through these values:
+/// `(c(k−1) + 6·c(k) + c(k+1))/8 = x(k)`.
+fn parabolas(x: &[f64]) -> Vec<f64> {
+    through(x, 8.0_f64.sqrt() - 3.0, 8.0)
+}
+
 /// The coefficients of the cubic B-splines that go through these values:
 /// `(c(k−1) + 4·c(k) + c(k+1))/6 = x(k)`, by a recursion to and fro.
 fn spline(x: &[f64]) -> Vec<f64> {
-    let root = 3.0_f64.sqrt() - 2.0;
+    through(x, 3.0_f64.sqrt() - 2.0, 6.0)
+}
+
+/// Coefficients `c` with `(c(k−1) − (r + 1/r)·c(k) + c(k+1))/share = x(k)` for this root `r`.
+fn through(x: &[f64], root: f64, share: f64) -> Vec<f64> {
     let mut out = x.to_vec();
     let mut before = x.first().map_or(0.0, |x| x / (1.0 - root));
     for slot in &mut out {
@@ -84,7 +98,7 @@ fn spline(x: &[f64]) -> Vec<f64> {
     let mut after = out.last().map_or(0.0, |x| x / (1.0 - root));
     for slot in out.iter_mut().rev() {
         after = *slot + root * after;
-        *slot = -6.0 * root * after;
+        *slot = -share * root * after;
     }
     out
 }

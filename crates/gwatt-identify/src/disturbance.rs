@@ -22,6 +22,9 @@ use super::transfer::TransferFunction;
 const LEAKS: [f64; 7] = [0.4, 0.16, 0.06, 0.025, 0.01, 0.004, 0.0016];
 /// Samples in units of which the longest is.
 const LASTS: f64 = 2.0;
+/// Integrators leak no less: held for longer, what wanders leaves too few digits for what
+/// swings, and slower than this nothing of an axis is.
+const LEAST: f64 = 2e-5;
 /// Noise of a smaller share of a position has too few digits in it.
 const DIGITS: f64 = 2e-12;
 /// Noise that is better by less is the same.
@@ -232,7 +235,18 @@ fn is_less(criterion: f64, than: Option<&(f64, Noise)>) -> bool {
 
 /// The leaks that are tried on so many samples, ascending in time: 0 for no integrators.
 fn leaks(samples: usize) -> impl Iterator<Item = f64> {
-    let least = LASTS / samples.max(1) as f64;
+    let least = (LASTS / samples.max(1) as f64).max(LEAST);
     let all = LEAKS.into_iter().filter(move |leak| *leak > least);
     std::iter::once(0.0).chain(all).chain([least])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_held_for_longer_than_digits_last() {
+        assert_eq!(leaks(1000).last(), Some(2e-3));
+        assert_eq!(leaks(1_000_000).last(), Some(LEAST));
+    }
 }

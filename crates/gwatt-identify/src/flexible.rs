@@ -17,21 +17,14 @@ use super::output_error::residuals;
 use super::parameters::parameters;
 use super::prepared::{Prepared, prepare};
 use super::recording::Recording;
+use super::roots::{roots_of, stands_for_delay_s};
 use super::rubbing::{Rubbing, Term};
 use super::spectrum::{FrequencyResponse, excited_rad_s, explained_share};
 use super::state_space::Measured;
 use super::transfer::{Factor, TransferFunction};
 
 pub use super::choice::{Choice, Method};
-
-/// A resonance or anti-resonance.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Root {
-    /// rad/s.
-    pub omega_rad_s: Figure,
-    /// Damping ratio.
-    pub damping: Figure,
-}
+pub use super::roots::Root;
 
 /// A flexible axis.
 #[derive(Debug, Clone)]
@@ -86,6 +79,8 @@ pub struct Flexible {
     pub seconds: f64,
     /// True where standard errors are known.
     pub has_errors: bool,
+    /// How far the delay is in doubt as long as the zeros stay what they are, s.
+    pub(crate) delay_doubt_s: f64,
     /// What was measured.
     pub(crate) measured: Measured,
     /// What makes the noise white, and its standard deviation then.
@@ -133,7 +128,7 @@ impl Flexible {
             f64::NAN
         };
         // What other models make of the delay comes on top.
-        let doubt = if is_late { 0.0 } else { self.delay_s.std };
+        let doubt = if is_late { 0.0 } else { self.delay_doubt_s };
         Figure {
             value,
             std: libm::hypot(
@@ -143,13 +138,6 @@ impl Flexible {
         }
     }
 }
-
-/// Damping from which on a pair of zeros makes no dip, and a pair of poles no
-/// peak: 1/√2.
-const DIP: f64 = std::f64::consts::FRAC_1_SQRT_2;
-
-/// Relative standard error of a frequency from which on a zero is not clear.
-const UNCLEAR: f64 = 0.1;
 
 /// Zeros farther beyond the band do not count as anti-resonances.
 const BEYOND: f64 = 1.05;
@@ -242,12 +230,27 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
             Term::Drift => {}
         }
     }
+    if described.speed_is_summed {
+        // The sum misses what stops the axis between samples.
+        let widen = |figure: &mut Option<Figure>, share: f64| {
+            if let Some(figure) = figure {
+                figure.std = libm::hypot(figure.std, share * figure.value);
+            }
+        };
+        widen(&mut described.viscous, SUMMED_VISCOUS);
+        widen(&mut described.coulomb, SUMMED_COULOMB);
+    }
     // A force is held while the friction changes: which speed of a sample it had is open.
     if let (Some(inertia), Some(viscous)) = (&mut described.inertia, described.viscous) {
         inertia.std = libm::hypot(inertia.std, viscous.value * prepared.period_s);
     }
     Ok(described)
 }
+
+/// Friction of a speed that is a sum of accelerations, as a share: what instants of sticking
+/// made of it in simulations.
+const SUMMED_VISCOUS: f64 = 0.04;
+const SUMMED_COULOMB: f64 = 0.12;
 
 /// Norm of what is left by norm of the output, means taken off.
 fn share(data: &Data<'_>, left: &[f64]) -> f64 {
@@ -273,59 +276,15 @@ fn shown_up_to(data: &Data<'_>, response: &FrequencyResponse) -> (f64, f64) {
     // What the steps of a measured position make of a held input swings at the end of
     // the band too.
     let is_integrated = !data.from_command && data.measured.integrators() > 0;
-    let highest = if is_integrated {
+    let highest = if data.from_command {
+        // One beyond what a command excites stands for dead time as well.
+        shown
+    } else if is_integrated {
         FAST / data.period_s
     } else {
         band
     };
     (shown, highest)
-}
-
-/// Zeros, zeros that are not clear, and poles that swing, in ascending order: up to these
-/// limits (rad/s) of zeros and of poles. `std` gives the standard error of a parameter.
-fn roots_of(
-    transfer: &TransferFunction,
-    (shown, highest): (f64, f64),
-    std: impl Fn(usize) -> f64,
-) -> [Vec<Root>; 3] {
-    let mut at = 1;
-    let mut zeros = Vec::new();
-    let mut unclear_zeros = Vec::new();
-    let mut poles = Vec::new();
-    for (index, factor) in transfer.zeros.iter().chain(&transfer.poles).enumerate() {
-        if let Factor::Pair {
-            omega_rad_s,
-            damping,
-        } = *factor
-        {
-            let root = Root {
-                omega_rad_s: Figure {
-                    value: omega_rad_s,
-                    std: omega_rad_s * std(at),
-                },
-                damping: Figure {
-                    value: damping,
-                    std: std(at + 1),
-                },
-            };
-            let is_zero = index < transfer.zeros.len();
-            let band = if is_zero { shown } else { highest };
-            if damping.abs() < DIP && omega_rad_s < band {
-                if is_zero && std(at) > UNCLEAR {
-                    unclear_zeros.push(root);
-                } else if is_zero {
-                    zeros.push(root);
-                } else {
-                    poles.push(root);
-                }
-            }
-        }
-        at += factor.degree();
-    }
-    for list in [&mut zeros, &mut unclear_zeros, &mut poles] {
-        list.sort_by(|a: &Root, b: &Root| a.omega_rad_s.value.total_cmp(&b.omega_rad_s.value));
-    }
-    [zeros, unclear_zeros, poles]
 }
 
 fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Flexible> {
@@ -355,7 +314,16 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
         ));
     }
     let bands = shown_up_to(data, &found.response);
-    let [zeros, unclear_zeros, poles] = roots_of(&transfer, bands, std);
+    let mut roots = roots_of(&transfer, bands, std);
+    if data.from_command {
+        for list in &mut roots {
+            list.retain(Root::rings);
+            for root in list {
+                root.runs_between_samples(data.period_s);
+            }
+        }
+    }
+    let [zeros, unclear_zeros, poles] = roots;
     let known = data.undisturbed.unwrap_or(compared.input);
     let missed_share = explained_share(
         known.get(data.skip()..).unwrap_or_default(),
@@ -386,8 +354,9 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
         speed_is_summed: false,
         delay_s: Figure {
             value: transfer.delay_s,
-            std: delay_std,
+            std: libm::hypot(delay_std, stands_for_delay_s(&transfer, data.from_command)),
         },
+        delay_doubt_s: delay_std,
         rel_error,
         whiteness: Whiteness::of(&white, LAGS),
         missed_share,

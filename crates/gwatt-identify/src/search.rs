@@ -14,6 +14,7 @@ use super::delay_profile::{Bounds, doubt_s, profile};
 use super::integrated;
 use super::measured_noise::Noise;
 use super::mode_starts;
+use super::next_to_friction;
 use super::noise::whitening;
 use super::output_error::{Effort, Estimate, Fitting, residuals};
 use super::response_starts;
@@ -189,17 +190,22 @@ fn on_all(raw: &Data<'_>, chosen: &Chosen, given: Given) -> Option<(Estimate, No
     let leaky = noise.held(raw);
     let data = leaky.as_ref().map_or(*raw, |leaky| leaky.data(raw));
     let fitting = Fitting::new(data, &noise.taps);
+    let is_open = given.order.is_none() && given.zeros.is_none();
+    let less = (is_open && !data.friction.is_empty())
+        .then(|| next_to_friction::without_its_pairs(&data.head(CHOSEN), &noise.taps, chosen));
+    let found = less.as_ref().unwrap_or(found);
     let fit = |from: &TransferFunction| {
         fitting.settled(fitting.refine(from, chosen.delay_is_free, Effort::FULL)?)
     };
     let mut best = fit(found)?;
-    if leaky.is_some() && given.order.is_none() && given.zeros.is_none() {
+    if leaky.is_some() && is_open {
         // What stood for noise as it was supposed at first stands for nothing now.
         for less in cancelled(&best.transfer, ONE) {
             let less = fit(&less).filter(|less| less.criterion() <= best.criterion());
             best = less.unwrap_or(best);
         }
     }
+    let best = next_to_friction::with_errors_of_bursts(&data, &noise.taps, best);
     Some((best, noise))
 }
 

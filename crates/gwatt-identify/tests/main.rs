@@ -3,3 +3,4 @@
 mod effects;
 mod sweep;
 mod simulated;
+mod sticking;

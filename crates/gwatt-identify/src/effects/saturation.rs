@@ -116,9 +116,10 @@ pub fn beyond(
     let mut step = near.fold(0.0, f64::max);
     for _ in 0..ROUNDS {
         step *= 0.5;
-        for limit in [best - step, best + step] {
+        let near = [best - step, best + step].into_iter();
+        for limit in near.filter(|limit| *limit > 0.0) {
             let rest = rest(limit);
-            if limit > 0.0 && rest < least {
+            if rest < least {
                 (least, best) = (rest, limit);
             }
         }
