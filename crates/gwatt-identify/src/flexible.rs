@@ -287,6 +287,17 @@ fn shown_up_to(data: &Data<'_>, response: &FrequencyResponse) -> (f64, f64) {
     (shown, highest)
 }
 
+/// After a command only what rings is a resonance, and how the command runs between samples
+/// is not known.
+fn keep_ringing(roots: &mut [Vec<Root>], period_s: f64) {
+    for list in roots {
+        list.retain(Root::rings);
+        for root in list {
+            root.runs_between_samples(period_s);
+        }
+    }
+}
+
 fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Flexible> {
     let leaky = found.noise.held(data);
     let compared = leaky.as_ref().map_or(*data, |leaky| leaky.data(data));
@@ -316,12 +327,7 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
     let bands = shown_up_to(data, &found.response);
     let mut roots = roots_of(&transfer, bands, std);
     if data.from_command {
-        for list in &mut roots {
-            list.retain(Root::rings);
-            for root in list {
-                root.runs_between_samples(data.period_s);
-            }
-        }
+        keep_ringing(&mut roots, data.period_s);
     }
     let [zeros, unclear_zeros, poles] = roots;
     let known = data.undisturbed.unwrap_or(compared.input);
