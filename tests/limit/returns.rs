@@ -204,14 +204,14 @@ fn random_programs_return_to_the_same_places() {
 #[test]
 fn reasons_show_the_block_that_returns() {
     let shop = shop("fanuc", PLACES, "reference_mm = 0");
-    let program = "G21 G90 G94 G54\nG93\nG91 G28 X0 Y0\nG94 G90\nM30\n";
+    let program = "G21 G90 G94 G54\nG0 X0 Y0\nG93\nG91 G28 X0 Y0\nG94 G90\nM30\n";
     let (code, out, errors) = limited(&shop, program, "--allow feed -o out.nc");
     assert_eq!(code, 1, "{errors}");
     assert!(
-        errors.contains("its feed is an inverse time (G93)") && errors.contains("a.nc:3:1\n"),
+        errors.contains("its feed is an inverse time (G93)") && errors.contains("a.nc:4:1\n"),
         "{errors}"
     );
     let all = format!("{out}{errors}");
-    assert!(all.contains("3 | G91 G28 X0 Y0\n"), "{all}");
+    assert!(all.contains("4 | G91 G28 X0 Y0\n"), "{all}");
     assert!(!all.contains("G0 X"), "{all}");
 }
