@@ -177,6 +177,26 @@ fn a_force_that_ends_is_saturated() {
     assert_eq!(judgement::rigid(&found), Judgement::Saturated);
 }
 
+/// Far more is asked for than the drive gives, and in between next to nothing: the limit is
+/// looked for near the smallest values, and never below zero.
+#[test]
+fn a_drive_that_gives_little_of_what_is_asked() {
+    let motion = Motion::sines(16_000, 0.15, &mut Random(8));
+    let free = Axis::PLAIN.force(&motion);
+    let mut sizes: Vec<f64> = free.iter().map(|f| f.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    for share in [35, 45, 55, 70] {
+        let small = sizes[16_000 * share / 100];
+        let asked = |f: &f64| if f.abs() < small { 0.01 * f } else { 100.0 * f };
+        let wanted: Vec<f64> = free.iter().map(asked).collect();
+        let position = Axis::PLAIN.moved_by(&clipped(&wanted, 100.0));
+        let recording = recorded(&wanted, &position, SENSORS, &mut Random(1));
+        if let Ok(found) = rigid::fit_all(&[recording], None, None) {
+            assert_ne!(judgement::rigid(&found), Judgement::Good, "{share}");
+        }
+    }
+}
+
 /// Nothing is found where nothing is: friction, noise, motions of all kinds.
 #[test]
 fn a_plain_axis_has_no_effects() {
