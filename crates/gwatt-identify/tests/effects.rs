@@ -177,8 +177,8 @@ fn a_force_that_ends_is_saturated() {
     assert_eq!(judgement::rigid(&found), Judgement::Saturated);
 }
 
-/// Far more is asked for than the drive gives, and in between next to nothing: the limit is
-/// looked for near the smallest values, and never below zero.
+/// Far more is asked for than the drive gives, and in between next to nothing: whatever is
+/// found, it is not called good.
 #[test]
 fn a_drive_that_gives_little_of_what_is_asked() {
     let motion = Motion::sines(16_000, 0.15, &mut Random(8));
