@@ -3,7 +3,7 @@
 use super::control::{Control, Run};
 use super::facts::{TOOL_CHANGE_UNKNOWN, ToolWords};
 use gwatt_machine::{Family, ToolChange};
-use gwatt_motion::ActionKind;
+use gwatt_motion::{ActionKind, Step};
 use gwatt_syntax::Word;
 use gwatt_syntax::source::Span;
 
@@ -188,7 +188,7 @@ impl Control<'_> {
                 run.act(ActionKind::ToolSelect, f64::from(self.tools.selected));
             }
             run.act(ActionKind::ToolChange, 6.0);
-        } else if run.facts.fixed == Some(TOOL_CHANGE_UNKNOWN) {
+        } else if run.steps.iter().any(is_in_motion) {
             run.act(ActionKind::ToolChangeInMotion, 6.0);
         }
     }
@@ -206,6 +206,10 @@ impl Control<'_> {
             }
         }
     }
+}
+
+fn is_in_motion(step: &Step) -> bool {
+    matches!(step, Step::Action(action) if action.kind == ActionKind::ToolChangeInMotion)
 }
 
 /// Whether M6 may stand on a line of its own before or after the motion of its block, with T.
