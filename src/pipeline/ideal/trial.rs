@@ -9,10 +9,10 @@ use crate::limit::{
 use crate::machine::{AXES, Machine, PathMode};
 use crate::pipeline::entry::Entry;
 use crate::pipeline::executor::Executor;
-use crate::pipeline::totals::Totals;
+use crate::pipeline::totals::{Totals, whether_fits};
 use crate::pipeline::watching::watching;
 use crate::pipeline::{Failure, LimitOptions, Options};
-use crate::power::{Assessment, Assessor, Certificate, PowerModel, Want};
+use crate::power::{Assessment, Assessor, Certificate, PowerModel};
 
 /// Moves that are limited and judged in all rounds together.
 const EFFORT: usize = 200_000;
@@ -110,7 +110,8 @@ impl<'m> Trial<'m> {
         depths: &Depths,
     ) -> Option<Vec<Outcome>> {
         let mut limiter = Limiter::new(self.machine, how, depths.clone());
-        let mut assessor = Assessor::new(self.machine, options.certificate, Want::PEAKS)
+        let want = whether_fits(self.machine, &PowerModel::new(self.machine));
+        let mut assessor = Assessor::new(self.machine, options.certificate, want)
             .starting(options.reading.start);
         let mut outcomes: Vec<Outcome> = Vec::with_capacity(self.moves.len());
         let mut sink = |mv: &Move, assessment: &Assessment, _: &[u8]| {
