@@ -59,6 +59,8 @@ pub(super) struct Peaks<'a> {
     axes: &'a [usize],
     want: Want,
     pub totals: Totals,
+    /// Powers that the axes do come to, drawn and fed back, W: `totals` are bounds of them.
+    reached_w: [f64; 2],
 }
 
 impl<'a> Peaks<'a> {
@@ -76,6 +78,7 @@ impl<'a> Peaks<'a> {
             axes,
             want,
             totals: Totals::new(converter.idle_w(mv, &model.axes, converter.axes)),
+            reached_w: [0.0; 2],
         }
     }
 
@@ -87,8 +90,10 @@ impl<'a> Peaks<'a> {
 
     /// The same of all that is reached between means `step_s` apart.
     pub fn raise_closely(&mut self, means: &[Mean; 2], step_s: f64) {
-        let found = self.closely((means, step_s), HALVINGS);
-        self.raise_to(found);
+        let [first, last] = means;
+        self.reach(first);
+        self.reach(last);
+        self.closely((means, step_s), HALVINGS);
     }
 
     /// Whether what the axes do at no more than this speed and acceleration each adds nothing.
@@ -140,7 +145,15 @@ impl<'a> Peaks<'a> {
         for &axis in self.fed() {
             let power = &self.model.axes[axis];
             let [first, last] = means;
-            let accels = [first.accel[axis], last.accel[axis]].map(|a| a * power.si_per_unit);
+            let accels = [first.accel[axis], last.accel[axis]];
+            if accels == [0.0; 2] && [first.speed[axis], last.speed[axis]] == [0.0; 2] {
+                drawn_w += power.holding_w();
+                if self.converter.credit_regen {
+                    fed_back_w -= power.holding_w();
+                }
+                continue;
+            }
+            let accels = accels.map(|a| a * power.si_per_unit);
             let (mut most, mut least) = (f64::NEG_INFINITY, f64::INFINITY);
             for speed in swing(means, axis, step_s) {
                 let v = speed * power.si_per_unit;
@@ -166,17 +179,17 @@ impl<'a> Peaks<'a> {
         [drawn_w, fed_back_w]
     }
 
-    /// The largest powers between two means, halved as often as it takes to come close, or
-    /// until they add nothing.
-    fn closely(&self, (means, step_s): (&[Mean; 2], f64), halvings: u32) -> [f64; 2] {
+    /// Raises them by the largest powers between two means, halved as often as it takes to
+    /// come close to what is reached anywhere, or until they add nothing.
+    fn closely(&mut self, (means, step_s): (&[Mean; 2], f64), halvings: u32) {
         let bound = self.bound_w(means, step_s);
-        if halvings == 0 || self.covers_w(bound) {
-            return bound;
+        if self.covers_w(bound) {
+            return;
         }
-        let [first, last] = [0, 1].map(|end| self.bound_w(&[means[end]; 2], 0.0));
-        let close = |side: usize| bound[side] <= CLOSE * first[side].max(last[side]);
-        if close(0) && close(1) {
-            return bound;
+        let close = |side: usize| bound[side] <= CLOSE * self.reached_w[side];
+        if halvings == 0 || close(0) && close(1) {
+            self.raise_to(bound);
+            return;
         }
         let [first, last] = means;
         let mut middle = *first;
@@ -185,8 +198,17 @@ impl<'a> Peaks<'a> {
             middle.accel[axis] = accel;
             middle.speed[axis] += 0.25 * step_s * (first.accel[axis] + accel);
         }
-        let halves = [[*first, middle], [middle, *last]];
-        let [a, b] = halves.map(|half| self.closely((&half, 0.5 * step_s), halvings - 1));
-        [0, 1].map(|side| a[side].max(b[side]))
+        self.reach(&middle);
+        for half in [[*first, middle], [middle, *last]] {
+            self.closely((&half, 0.5 * step_s), halvings - 1);
+        }
+    }
+
+    /// A mean that the axes come to.
+    fn reach(&mut self, mean: &Mean) {
+        let found = self.bound_w(&[*mean; 2], 0.0);
+        for (reached, found) in self.reached_w.iter_mut().zip(found) {
+            *reached = reached.max(found);
+        }
     }
 }
