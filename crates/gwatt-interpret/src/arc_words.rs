@@ -6,7 +6,7 @@ use super::control::{Control, Run};
 use super::places::STANDSTILL_MM;
 use super::turned_arc::Tilted;
 use gwatt_machine::units::MM_PER_INCH;
-use gwatt_machine::{ALL_AXES, AxisKind, Family};
+use gwatt_machine::{ALL_AXES, AxisKind};
 use gwatt_motion::{Arc, MoveKind};
 use gwatt_syntax::source::Span;
 
@@ -25,7 +25,7 @@ impl Control<'_> {
         };
         let [first, second, normal] = self.modal.plane;
         let touched = self.position.unknown;
-        let printer = self.machine.controller.language.family == Family::Marlin;
+        let printer = self.rules.relative_places;
         if printer && (touched.contains(first) || touched.contains(second)) {
             return self.arc_from_unknown(run, &end, unknown);
         }
@@ -108,7 +108,7 @@ impl Control<'_> {
                 .help("write the number of turns");
         }
         let stray = b"IJK"[normal];
-        if run.words.take(stray).is_some_and(|value| value != 0.0) && !self.is_siemens() {
+        if run.words.take(stray).is_some_and(|value| value != 0.0) && !self.rules.stray_centres {
             let span = run.words.span(stray, run.block);
             let message = format!("{} does not belong to an arc in this plane", stray as char);
             run.report
@@ -135,7 +135,7 @@ impl Control<'_> {
             return Some(arc::from_radius(ends, radius * unit));
         }
         if offsets == [None, None] {
-            let radius = if self.is_siemens() { "CR" } else { "R" };
+            let radius = self.rules.radius_word;
             let message = format!(
                 "an arc without a centre ({} {}) or {radius}",
                 letters[0] as char, letters[1] as char

@@ -7,7 +7,8 @@ use super::isg::Pending;
 use super::jump::Transfer;
 use super::label::Label;
 use super::parameters::{LOCALS, Scope};
-use gwatt_machine::Family;
+use crate::own_state::OwnState;
+use crate::rules::Macros;
 use gwatt_syntax::source::Span;
 
 impl Interpreter<'_> {
@@ -29,50 +30,32 @@ impl Interpreter<'_> {
         let arguments = arguments.unwrap_or(&none);
         self.control.parameters.enter(scope, arguments);
         self.control.enter_level();
-        if let Some(siemens) = &mut self.control.siemens {
-            siemens.enter();
-        }
-        if let Some(isg) = &mut self.control.isg {
-            isg.enter();
-        }
-        if let Some(osp) = &mut self.control.osp {
-            osp.enter();
-        }
+        self.control.language.enter(&mut self.control);
     }
 
     /// A subprogram with its own variables has ended.
     pub(super) fn leave(&mut self, scope: Scope) {
         self.control.parameters.leave(scope);
         self.control.leave_level();
-        let modal = &mut self.control.modal;
-        if let Some(siemens) = &mut self.control.siemens {
-            siemens.leave(modal, &mut self.control.knobs, self.control.machine);
-            self.control.settle_siemens();
-        }
-        if let Some(isg) = &mut self.control.isg {
-            isg.leave();
-        }
-        if let Some(osp) = &mut self.control.osp {
-            osp.leave();
-        }
+        self.control.language.leave(&mut self.control);
     }
 
-    /// Whether programs are written in the language of the ISG kernel.
-    pub(super) fn is_isg(&self) -> bool {
-        self.control.isg.is_some()
+    /// Whether `%` names programs, of which a file may have several.
+    pub(super) fn percent_names_programs(&self) -> bool {
+        self.control.rules.percent_names_programs
     }
 
     /// What the line that is executed next has to do with where it is reached
     /// from.
     pub(super) fn expect_next(&mut self, pending: Pending) {
-        if let Some(isg) = &mut self.control.isg {
+        if let OwnState::Isg(isg) = &mut self.control.own {
             isg.pending = pending;
         }
     }
 
     /// Whether programs are written in RS274/NGC.
     pub(super) fn rs274(&self) -> bool {
-        self.control.machine.controller.language.family == Family::Rs274
+        self.control.rules.macros == Macros::OWords
     }
 
     /// Whether O words are those of `FluidNC`.
@@ -114,7 +97,7 @@ impl Interpreter<'_> {
 
     /// FOR counts on when it is executed next.
     pub(crate) fn count_on(&mut self) {
-        if let Some(siemens) = &mut self.control.siemens {
+        if let OwnState::Siemens(siemens) = &mut self.control.own {
             siemens.count_on();
         }
     }
@@ -122,8 +105,7 @@ impl Interpreter<'_> {
     /// Whether the program is a subprogram with parameters, which nobody has called.
     #[must_use]
     pub fn is_uncalled(&self) -> bool {
-        let siemens = self.control.siemens.as_ref();
-        siemens.is_some_and(|siemens| siemens.is_uncalled())
+        matches!(&self.control.own, OwnState::Siemens(siemens) if siemens.is_uncalled())
     }
 
     /// The program ends here.

@@ -1,23 +1,22 @@
 //! What holds from block to block, and the block that is being executed. What the words do is
 //! in the files of their kinds, as methods of both.
 
+use crate::rules::LanguageRules;
 use std::cell::Cell;
+use std::fmt;
 
 use super::compensation::{Choice, Compensation, Corners};
 use super::facts::Facts;
-use super::isg::Isg;
 use super::jump::Transfer;
 use super::knob::KnobState;
 use super::modal::Modal;
-use super::nci::Nci;
-use super::osp::Osp;
+use super::own_state::OwnState;
 use super::parameters::Parameters;
 use super::position::{BlockDelete, Position};
 use super::printer;
 use super::probe::Probe;
 use super::program_coordinates::{Polar, Programmed};
 use super::report::Report;
-use super::siemens::Siemens;
 use super::special::Special;
 use super::spindle_announced::Announced;
 use super::spindle_speed::SpindleMode;
@@ -35,6 +34,10 @@ use gwatt_syntax::source::Span;
 #[derive(Debug)]
 pub(super) struct Control<'m> {
     pub(super) machine: &'m Machine,
+    /// What its language differs in from others.
+    pub(super) rules: &'static LanguageRules,
+    /// How its language reads and executes blocks.
+    pub(super) language: &'static dyn Language,
     pub(super) modal: Modal,
     pub(super) position: Position,
     pub(super) knobs: KnobState,
@@ -88,14 +91,64 @@ pub(super) struct Control<'m> {
     pub(super) transfer: Option<Transfer>,
     /// A value of the block shows the motion word or the F in force.
     pub(super) reads_state: Cell<bool>,
-    /// What only SINUMERIK keeps; `None` for other languages.
-    pub(super) siemens: Option<Box<Siemens>>,
-    /// The same for the ISG kernel.
-    pub(super) isg: Option<Box<Isg>>,
-    /// The same for OSP.
-    pub(super) osp: Option<Box<Osp>>,
-    /// The same for NC I.
-    pub(super) nci: Option<Nci>,
+    /// What only its language keeps.
+    pub(super) own: OwnState,
+}
+
+/// How a language reads and executes its blocks. What languages differ in besides are the facts
+/// of [`LanguageRules`].
+pub(super) trait Language: fmt::Debug + Sync {
+    /// What it keeps besides what all languages keep, when a program begins.
+    fn own_state(&self) -> OwnState {
+        OwnState::None
+    }
+
+    /// Whether a line is a command with parameters of its own and no block of words.
+    fn is_command(&self, _block: &Block) -> bool {
+        false
+    }
+
+    /// A block begins: whether it has to be read, though the scanner took it for plain words.
+    fn begin_block(&self, _control: &mut Control<'_>, _block: &Block, _text: &[u8]) -> bool {
+        false
+    }
+
+    /// Reads a block that is more than plain words: values that are worked out, assignments,
+    /// flow. True when the program does not go on at the next line. What is not understood
+    /// stays in the block's issues and is reported.
+    fn read(
+        &self,
+        control: &mut Control<'_>,
+        block: &mut Block,
+        report: &mut Report<'_, '_>,
+    ) -> bool;
+
+    /// Whether a block that has been read does something though it has no words.
+    fn acts_without_words(&self, _control: &Control<'_>) -> bool {
+        false
+    }
+
+    /// The words of a block are sorted, and nothing is executed yet.
+    fn prepare(&self, _control: &mut Control<'_>, _run: &mut Run<'_, '_>) {}
+
+    /// Whether words of a plain move are no more than that in the state that is reached.
+    fn moves_plainly(&self, _control: &Control<'_>, _words: &Words) -> bool {
+        true
+    }
+
+    /// Executes any other block; `errors` from before it.
+    fn execute(&self, control: &mut Control<'_>, run: &mut Run<'_, '_>, errors: u64);
+
+    /// The value of an expression in the state that is reached; `None` where it has none.
+    fn value(&self, _control: &mut Control<'_>, _text: &[u8]) -> Option<f64> {
+        None
+    }
+
+    /// A subprogram begins.
+    fn enter(&self, _control: &mut Control<'_>) {}
+
+    /// A subprogram has ended.
+    fn leave(&self, _control: &mut Control<'_>) {}
 }
 
 /// The block that is being executed.

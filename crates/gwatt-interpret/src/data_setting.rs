@@ -7,7 +7,7 @@ use super::offsets::{FURTHER, FURTHER_MAX, SYSTEMS};
 use super::places::POSITION_MAX_MM;
 use super::tool_table::Tool;
 use super::tools::words::tool_number;
-use gwatt_machine::{ALL_AXES, AXES, AxisValues, Family};
+use gwatt_machine::{ALL_AXES, AXES, AxisValues};
 use gwatt_syntax::source::Span;
 
 /// The system that G10 L11 measures in: G59.3.
@@ -31,7 +31,7 @@ type AxisWords = arrayvec::ArrayVec<(usize, f64), AXES>;
 
 impl Control<'_> {
     pub(super) fn data_setting(&mut self, span: Span, run: &mut Run<'_, '_>) {
-        let rs274 = self.machine.controller.language.family == Family::Rs274;
+        let rs274 = self.rules.places_in_parameters;
         let form = run.words.take(b'L').unwrap_or(-1.0);
         let number = run.words.take(b'P');
         let mut words = AxisWords::new();

@@ -1,25 +1,21 @@
-//! One block at a time, in LinuxCNC's order of execution: feed mode, F, S, T,
-//! tool change, spindle, coolant, dwell, plane, units, offsets, path mode,
-//! distance mode, reference points and offsets, motion, stop.
+//! One block at a time: passed over, read, executed; most go the short way.
 
+use crate::rules::rules_of;
 use std::cell::Cell;
 
 use super::compensation::Choice;
 use super::control::{Control, Run};
 use super::facts::Facts;
 use super::fast_path::is_direct;
-use super::isg::Isg;
 use super::knob::KnobState;
+use super::languages::language_of;
 use super::modal::Modal;
-use super::nci::Nci;
-use super::osp::Osp;
 use super::parameters::Parameters;
 use super::position::{Position, Reading};
 use super::printer;
 use super::probe::Probe;
 use super::program_coordinates::Programmed;
 use super::report::{Diagnostics, Report};
-use super::siemens::{Siemens, is_beyond_words};
 use super::special::Special;
 use super::spindle_announced::Announced;
 use super::spindle_speed::SpindleMode;
@@ -28,8 +24,8 @@ use super::statement::Traces;
 use super::tools::Tools;
 use super::turning::Turning;
 use super::words::Words;
-use gwatt_machine::{Family, Machine};
-use gwatt_motion::{ActionKind, Step};
+use gwatt_machine::Machine;
+use gwatt_motion::Step;
 use gwatt_syntax::Block;
 
 /// Executes the blocks of a program.
@@ -43,12 +39,16 @@ impl<'m> Interpreter<'m> {
     /// Begins a program: state at power-on.
     #[must_use]
     pub fn new(machine: &'m Machine, reading: &Reading) -> Self {
+        let rules = rules_of(&machine.controller.language);
+        let language = language_of(&machine.controller.language);
         let mut control = Control {
             machine,
+            rules,
+            language,
             modal: Modal::power_on(machine),
             position: Position::new(machine, reading),
             knobs: KnobState::new(machine),
-            special: Special::new(machine, reading),
+            special: Special::new(rules, reading),
             loads: 0,
             loads_off: 0,
             tools: Tools::new(reading.tools.clone()),
@@ -78,15 +78,11 @@ impl<'m> Interpreter<'m> {
             has_program_number: false,
             run: 1,
             text: reading.text,
-            parameters: Parameters::new(machine.controller.language.family),
+            parameters: Parameters::new(rules.macros),
             traces: Traces::default(),
             transfer: None,
             reads_state: Cell::new(false),
-            siemens: (machine.controller.language.family == Family::Siemens)
-                .then(|| Box::new(Siemens::new())),
-            isg: (machine.controller.language.family == Family::Isg).then(|| Box::new(Isg::new())),
-            osp: (machine.controller.language.dialect.osp).then(|| Box::new(Osp::new())),
-            nci: (machine.controller.language.family == Family::Nci).then(Nci::default),
+            own: language.own_state(),
         };
         if let Some(file) = &reading.parameters {
             control.parameters.keep(file);
@@ -167,7 +163,7 @@ impl<'m> Interpreter<'m> {
         if self.control.passes_over(block, &mut report) {
             return;
         }
-        if printer::is_command(self.control.machine, block) {
+        if self.control.language.is_command(block) {
             return self.command_line(block, steps, facts, report);
         }
         if self.control.is_dollar(text) {
@@ -182,13 +178,16 @@ impl<'m> Interpreter<'m> {
             };
             return self.control.dollar(&mut run);
         }
-        let beyond = self.control.begin_block(block, text);
-        let transfers = beyond && self.control.beyond_words(block, &mut report);
+        let language = self.control.language;
+        let control = &mut self.control;
+        let asks = language.begin_block(control, block, text);
+        let beyond = asks || !block.issues.is_empty();
+        let transfers = beyond && language.read(control, block, &mut report);
         let reads_state = beyond && self.control.reads_state.take();
         if beyond {
             self.control.learn_from_probe();
         }
-        let acts = self.control.acts_without_words();
+        let acts = language.acts_without_words(&self.control);
         if !block.issues.is_empty() || block.words.is_empty() && !acts {
             if block.words.is_empty() {
                 self.control.abort(block, &mut report);
@@ -258,27 +257,6 @@ impl<'m> Interpreter<'m> {
 }
 
 impl Control<'_> {
-    /// A block begins: whether its language has to read it, since it is more than plain words.
-    fn begin_block(&mut self, block: &Block, text: &[u8]) -> bool {
-        let mut beyond = !block.issues.is_empty();
-        if let Some(siemens) = &mut self.siemens {
-            siemens.begin_block();
-            beyond |= is_beyond_words(block, text);
-        } else if let Some(isg) = &self.isg {
-            beyond |= isg.is_beyond_words(block);
-        } else if let Some(osp) = &mut self.osp {
-            osp.only_keeps = false;
-            beyond |= osp.is_beyond_words(block);
-        }
-        beyond || self.nci.is_some()
-    }
-
-    /// Whether the block does something though it has no words.
-    fn acts_without_words(&self) -> bool {
-        self.siemens.as_ref().is_some_and(|it| it.is_active())
-            || self.nci.as_ref().is_some_and(Nci::is_active)
-    }
-
     /// Reports a program that is named and not called.
     fn check_callee(&mut self, run: &mut Run<'_, '_>) {
         if self.callee.take().is_some() {
@@ -301,16 +279,15 @@ impl Control<'_> {
         if self.adapts {
             self.adapt_words(run);
         }
-        self.take_dynamics(run);
+        let language = self.language;
+        language.prepare(self, run);
         let errors = run.report.diagnostics.errors;
         if !self.pending_actions.is_empty() {
             let span = run.whole();
             self.settle_debts(span, run);
             self.tell_spindle(run);
         }
-        let siemens = self.siemens.as_deref();
-        let special = siemens.is_some_and(|siemens| !siemens.is_plain_motion(run.words));
-        if run.words.is_plain_motion() && !special {
+        if run.words.is_plain_motion() && language.moves_plainly(self, run.words) {
             // The same as below, without asking for what is not there.
             self.read_feed(run);
             self.motion_word(run);
@@ -320,62 +297,6 @@ impl Control<'_> {
             }
             return;
         }
-        if siemens.is_some() {
-            return self.siemens_block(run);
-        }
-        if self.machine.controller.language.family == Family::Marlin
-            && run.report.diagnostics.errors == errors
-            && !run.words.is_alone()
-        {
-            self.command_line(run);
-            return;
-        }
-        self.general(run, errors);
-    }
-
-    /// A block of any words, which are filled in; `errors` from before that.
-    pub(super) fn general(&mut self, run: &mut Run<'_, '_>, errors: u64) {
-        if self.macro_call(run) {
-            return;
-        }
-        if self.program_number(run) {
-            run.words.unused = 0;
-            return;
-        }
-        let dwell_s = self.dwell_time(run);
-        self.feed_mode(run);
-        self.read_feed(run);
-        self.speed_and_tool(run);
-        self.m_words(run);
-        if let Some(dwell_s) = dwell_s {
-            self.dwell(run, dwell_s);
-        }
-        self.settings(run);
-        self.note_queue_and_spindle(run);
-        self.turn_knobs(run);
-        self.motion_in_mode(run);
-        if run.report.diagnostics.errors == errors {
-            self.complain_about_rest(run);
-        }
-        self.end_of_block(run);
-    }
-
-    /// Stops and the end come after the motion.
-    pub(super) fn end_of_block(&mut self, run: &mut Run<'_, '_>) {
-        self.loads &= !std::mem::take(&mut self.loads_off);
-        if !run.facts.boundary && run.facts.stop_word.is_none() {
-            return;
-        }
-        if run.words.m.iter().any(|(number, _)| *number == 60) {
-            self.change_tool_at_end(run);
-        }
-        for index in 0..run.words.m.len() {
-            let number = run.words.m[index].0;
-            let Some(kind @ (ActionKind::Stop | ActionKind::End)) = self.m_kind(number) else {
-                continue;
-            };
-            self.ended |= kind == ActionKind::End;
-            run.act(kind, f64::from(number) / 10.0);
-        }
+        language.execute(self, run, errors);
     }
 }

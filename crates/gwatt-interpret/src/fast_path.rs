@@ -10,7 +10,8 @@ use super::facts::Facts;
 use super::modal::{Feed, NumberText};
 use super::places::{EXTRUDER, POSITION_MAX_MM, STANDSTILL_MM};
 use super::words::axis_of;
-use gwatt_machine::{AxisKind, AxisSet, AxisValues, Family, Machine};
+use crate::rules::rules_of;
+use gwatt_machine::{AxisKind, AxisSet, AxisValues, Machine};
 use gwatt_motion::{FeedMode, Move, MoveKind, Step, Stray, path_length};
 use gwatt_syntax::{Block, Word};
 
@@ -18,9 +19,7 @@ use gwatt_syntax::{Block, Word};
 pub(super) fn is_direct(machine: &Machine) -> bool {
     let language = &machine.controller.language;
     let dialect = &language.dialect;
-    !matches!(language.family, Family::Siemens | Family::Nci)
-        && !dialect.active
-        && !dialect.adapts()
+    rules_of(language).fixed_meaning && !dialect.active && !dialect.adapts()
 }
 
 /// What the words of a straight move say.

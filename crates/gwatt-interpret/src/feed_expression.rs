@@ -2,9 +2,7 @@
 //! value, so that a later block can be given the F by it, whichever value it has in a run.
 
 use super::control::Control;
-use super::expression::Reader;
 use super::modal::{Feed, NumberText};
-use gwatt_machine::Family;
 use gwatt_syntax::Word;
 
 /// What stands after the letter of a word, with the `=` where the language has one.
@@ -39,21 +37,14 @@ impl Control<'_> {
         else {
             return;
         };
-        if self.value_of_text(expression.as_bytes()) != Some(value)
+        let text = expression.as_bytes();
+        if self
+            .language
+            .value(self, text.strip_prefix(b"=").unwrap_or(text))
+            != Some(value)
             && let Some(feed) = &mut self.modal.feed
         {
             feed.expression = NumberText::default();
-        }
-    }
-
-    /// The value of an expression in the state that is reached; `None` where it has none.
-    fn value_of_text(&mut self, text: &[u8]) -> Option<f64> {
-        let text = text.strip_prefix(b"=").unwrap_or(text);
-        match self.machine.controller.language.family {
-            Family::Siemens => self.siemens_value(text),
-            Family::Isg => self.isg_value(text),
-            _ if self.osp.is_some() => self.osp_value(text),
-            _ => Reader::new(text, 0).value(self).ok().flatten(),
         }
     }
 }

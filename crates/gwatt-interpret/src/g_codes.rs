@@ -2,7 +2,7 @@
 
 use super::code::{GCode, Motion};
 use super::tools::ToolLength;
-use gwatt_machine::{Family, PathMode};
+use gwatt_machine::PathMode;
 
 /// Number × 10 of a word; `None` for numbers that no code has.
 pub(super) fn code_number(value: f64) -> Option<u16> {
@@ -14,84 +14,8 @@ pub(super) fn code_number(value: f64) -> Option<u16> {
     ((tenfold - f64::from(number)).abs() < 1e-6).then_some(number)
 }
 
-/// The G word with this number × 10, as the family reads it; `None` if it is
-/// not known.
-pub(super) fn g_code(number: u16, family: Family) -> Option<GCode> {
-    match (family, number) {
-        (Family::Siemens, _) => super::siemens::codes::siemens_code(number),
-        // Marlin: G60 and G61 save a position and return to it.
-        (Family::Marlin, 600..=640) => None,
-        (Family::Rs274, 410 | 411 | 420 | 421) | (Family::Iso | Family::Isg, 410 | 420) => {
-            Some(GCode::CompensationOn {
-                left: number < 420,
-                by_diameter: number % 10 == 1,
-            })
-        }
-        (Family::Iso, 650 | 660 | 670) => Some(GCode::MacroCall),
-        (Family::Isg, _) => isg_g_code(number),
-        (Family::Nci, _) => super::nci::codes::nci_g_code(number, common_g_code),
-        _ => common_g_code(number).or_else(|| coordinate_g_code(number, family)),
-    }
-}
-
-/// Offsets, turned coordinates and spindle speed, which differ by family.
-fn coordinate_g_code(number: u16, family: Family) -> Option<GCode> {
-    Some(match (family, number) {
-        (Family::Rs274, 70) => GCode::Diameter(true),
-        (Family::Rs274, 80) => GCode::Diameter(false),
-        (Family::Rs274 | Family::Iso, 100) => GCode::DataSetting,
-        (Family::Rs274, 281 | 301) => GCode::SaveReference,
-        (Family::Rs274, 431) => GCode::ToolLength(ToolLength::Given),
-        (Family::Rs274, 432) => GCode::ToolLength(ToolLength::Added),
-        (Family::Iso, 440) => GCode::ToolLength(ToolLength::Reversed),
-        (Family::Rs274 | Family::Iso, 520) => GCode::LocalOffset,
-        (Family::Iso, 541 | 1540) => GCode::FurtherOffset,
-        (Family::Rs274 | Family::Iso, 960 | 970) => GCode::SurfaceSpeed,
-        (Family::Iso, 150) => GCode::Polar(false),
-        (Family::Iso, 160) => GCode::Polar(true),
-        (Family::Iso, 680) => GCode::Rotation(true),
-        (Family::Iso, 690) => GCode::Rotation(false),
-        (Family::Iso, 500) => GCode::Scaling(false),
-        (Family::Iso, 510) => GCode::Scaling(true),
-        (Family::Iso, 501) => GCode::Mirror(false),
-        (Family::Iso, 511) => GCode::Mirror(true),
-        _ => return None,
-    })
-}
-
-/// The G words of the ISG kernel (TF5200, "G functions").
-fn isg_g_code(number: u16) -> Option<GCode> {
-    match number {
-        // G21 mirrors X and G20 ends it; G70 and G71 set the unit.
-        200 | 210 => Some(GCode::MirrorX),
-        700 => common_g_code(200),
-        710 => common_g_code(210),
-        // "Zero offsets (G53/G54/...G59)": G53 deselects them until further
-        // notice, it is no word for one block.
-        530 => Some(GCode::WorkOffset(0)),
-        // G80 to G89 call subprograms of the machine's builder.
-        800 => None,
-        1610 => Some(GCode::ArcAbsolute(true)),
-        1620 => Some(GCode::ArcAbsolute(false)),
-        680 => Some(GCode::Rotation(true)),
-        690 => Some(GCode::Rotation(false)),
-        // Where speed changes, exact stop and blending at the ends of blocks,
-        // feed forward, corrections of centres, weightings that are off.
-        80 | 90 | 9000 | 9010 | 100..=130 if number.is_multiple_of(10) => Some(GCode::Ignored),
-        960 | 970 => Some(GCode::SurfaceSpeed),
-        // "Exact stop (G60/G360/G359)".
-        600 => Some(GCode::ExactOnce),
-        3590 | 3600 => Some(GCode::PathMode),
-        2600 | 2610 => Some(GCode::Ignored),
-        1150..=1170 | 1350..=1370 | 1640 | 1650 | 1660 | 250 | 260 if number.is_multiple_of(10) => {
-            Some(GCode::Ignored)
-        }
-        _ => common_g_code(number),
-    }
-}
-
-/// The G words that most families share.
-fn common_g_code(number: u16) -> Option<GCode> {
+/// The G words that most languages share.
+pub(super) fn common_g_code(number: u16) -> Option<GCode> {
     use gwatt_motion::FeedMode::{InverseTime, PerMinute, PerRevolution};
     Some(match number {
         0 => GCode::Motion(Motion::Rapid),

@@ -3,10 +3,11 @@
 
 mod control;
 
+use crate::rules::{KeptVariables, rules_of};
 use std::fmt;
 use std::str::FromStr;
 
-use gwatt_machine::{Family, Language};
+use gwatt_machine::Language;
 
 /// Largest number of a variable, and of an R parameter.
 const NUMBER_MAX: u32 = 999_999;
@@ -105,14 +106,14 @@ impl GivenVariable {
     /// Whether a language has such a variable, and keeps it.
     #[must_use]
     pub fn suits(&self, language: &Language) -> bool {
-        let numbered = matches!(language.family, Family::Rs274 | Family::Iso);
-        match &self.name {
+        match (&self.name, rules_of(language).kept) {
             // The place of --start, and what follows from the tool.
-            Given::Number(5401..=5413 | 5420..=5428) if language.family == Family::Rs274 => false,
-            Given::Number(_) => numbered && !language.dialect.osp,
-            Given::Named(_) => language.family == Family::Rs274,
-            Given::R(_) => language.family == Family::Siemens,
-            Given::Common(_) => language.dialect.osp,
+            (Given::Number(5401..=5413 | 5420..=5428), KeptVariables::NumbersAndNames) => false,
+            (Given::Number(_), KeptVariables::Numbers | KeptVariables::NumbersAndNames)
+            | (Given::Named(_), KeptVariables::NumbersAndNames)
+            | (Given::R(_), KeptVariables::R)
+            | (Given::Common(_), KeptVariables::Common) => true,
+            _ => false,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! grbl's lines that begin with `$` ("Commands", "Configuration v1.1").
 
 use super::control::{Control, Run};
-use gwatt_machine::Family;
+use crate::rules::Macros;
 use gwatt_motion::{ActionKind, MoveKind};
 
 /// Commands that show something or unlock, and move nothing.
@@ -14,7 +14,7 @@ impl Control<'_> {
     /// Whether a line is a command of grbl.
     pub(super) fn is_dollar(&self, text: &[u8]) -> bool {
         let language = &self.machine.controller.language;
-        language.family == Family::Rs274
+        self.rules.macros == Macros::OWords
             && language.loose_o_words
             && text.trim_ascii_start().starts_with(b"$")
     }

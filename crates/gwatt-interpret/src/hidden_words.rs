@@ -3,7 +3,6 @@
 
 use super::control::Control;
 use super::report::Report;
-use gwatt_machine::Family;
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, Word};
 
@@ -12,7 +11,7 @@ impl Control<'_> {
     #[inline]
     pub(super) fn may_hide_words(&self, text: &[u8], block: &Block) -> bool {
         let language = &self.machine.controller.language;
-        if language.family == Family::Marlin {
+        if self.rules.words_in_parentheses {
             return memchr::memchr(b'(', text).is_some();
         }
         block.words_end != block.text_end && language.dialect.semicolon_ends_block
@@ -25,7 +24,7 @@ impl Control<'_> {
         if !self.may_hide_words(text, block) {
             return false;
         }
-        if self.machine.controller.language.family == Family::Marlin {
+        if self.rules.words_in_parentheses {
             let moves = |word: &Word| word.letter == b'G' && (0.0..4.0).contains(&word.value);
             let words =
                 words_in_parentheses(text).filter(|_| block.words.first().is_some_and(moves));

@@ -2,7 +2,7 @@
 
 use super::control::{Control, Run};
 use super::facts::{TOOL_CHANGE_UNKNOWN, ToolWords};
-use gwatt_machine::{Family, ToolChange};
+use gwatt_machine::ToolChange;
 use gwatt_motion::{ActionKind, Step};
 use gwatt_syntax::Word;
 use gwatt_syntax::source::Span;
@@ -15,7 +15,7 @@ impl Control<'_> {
             .m
             .iter()
             .any(|(number, _)| self.m_kind(*number) == Some(ActionKind::Other))
-            && !self.is_siemens()
+            && !self.rules.free_m_words
             // Such words stand next to S and T: `S580 M13`.
             && !self.dialect().other_m;
         if let Some(value) = run.words.take(b'S')
@@ -57,13 +57,13 @@ impl Control<'_> {
         match number {
             0 | 10 | 600 => Some(ActionKind::Stop),
             20 | 300 => Some(ActionKind::End),
-            170 if self.is_siemens() => Some(ActionKind::End),
+            170 if self.rules.free_m_words => Some(ActionKind::End),
             30 | 40 | 50 => Some(ActionKind::Spindle),
             60 => Some(ActionKind::ToolChange),
             70 | 80 | 90 => Some(ActionKind::Coolant),
             _ if self.is_ignored(number) || is_load() => Some(ActionKind::Other),
             // SINUMERIK: free M numbers are the machine builder's switches.
-            _ if self.is_siemens() => Some(ActionKind::Other),
+            _ if self.rules.free_m_words => Some(ActionKind::Other),
             _ if self.is_other_m(number) => Some(ActionKind::Other),
             _ => None,
         }
@@ -100,9 +100,7 @@ impl Control<'_> {
             if self.state_word(number, span, run) {
                 continue;
             }
-            if matches!(number, 820 | 830)
-                && self.machine.controller.language.family == Family::Marlin
-            {
+            if matches!(number, 820 | 830) && self.rules.extruder_modes {
                 self.extruder_mode(Some(number == 820));
                 continue;
             }
@@ -128,8 +126,8 @@ impl Control<'_> {
                     self.change_tool(span, run);
                     continue;
                 }
-                ActionKind::Other if self.is_siemens() && self.is_ignored(number) => {}
-                ActionKind::Other if self.is_siemens() => {
+                ActionKind::Other if self.rules.free_m_words && self.is_ignored(number) => {}
+                ActionKind::Other if self.rules.free_m_words => {
                     let message =
                         "M words of the machine's builder are taken as switches that move no axis";
                     run.report.note_once("builder-m", message, span);

@@ -6,7 +6,7 @@ use super::expression::{Fault, Held, Name, Value, Variables, remedy};
 use super::jump::{Go, Transfer};
 use super::report::Report;
 use super::statement::Unread;
-use gwatt_machine::Family;
+use crate::rules::Macros;
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, Issue, IssueKind};
 
@@ -22,25 +22,9 @@ pub(super) fn not_finite(block: &Block) -> Option<Fault> {
 }
 
 impl Control<'_> {
-    /// Reads a block that is more than plain words: values that are worked out,
-    /// assignments, flow. True when the program does not go on at the next line.
-    /// What is not understood stays in the block's issues and is reported.
+    /// Reads a block of RS274/NGC or of Fanuc's custom macro B: see [`super::control::Language::read`].
     #[cold]
-    pub(super) fn beyond_words(&mut self, block: &mut Block, report: &mut Report<'_, '_>) -> bool {
-        if self.siemens.is_some() {
-            self.begun = true;
-            return self.siemens_words(block, report);
-        }
-        if self.isg.is_some() {
-            return self.isg_words(block, report);
-        }
-        if self.osp.is_some() {
-            return self.osp_words(block, report);
-        }
-        if self.nci.is_some() {
-            self.nci_words(block, report);
-            return false;
-        }
+    pub(super) fn macro_words(&mut self, block: &mut Block, report: &mut Report<'_, '_>) -> bool {
         if self.run > 1
             && let Some(transfers) = self.replay(block, report)
         {
@@ -148,8 +132,7 @@ impl Control<'_> {
     }
 
     fn raises_alarm(&self, value: Value) -> bool {
-        self.machine.controller.language.family != Family::Rs274
-            && value.is_some_and(|it| it != 0.0)
+        self.rules.macros != Macros::OWords && value.is_some_and(|it| it != 0.0)
     }
 
     /// Takes what the reading of a block of the ISG kernel or of OSP came to. True
@@ -187,7 +170,7 @@ impl Control<'_> {
         if run.words.unused == 0 {
             return;
         }
-        if self.machine.controller.language.family != Family::Rs274 {
+        if self.rules.offset_numbers_stay {
             // Numbers of tool offsets without a code that uses them: that of a
             // radius stays in force.
             if let Some(number) = run.words.take(b'D') {

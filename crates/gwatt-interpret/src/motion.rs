@@ -8,7 +8,7 @@ use super::printer::Course;
 use super::report::Report;
 use super::stray;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
-use gwatt_machine::{ALL_AXES, AxisKind, AxisSet, AxisValues, Family};
+use gwatt_machine::{ALL_AXES, AxisKind, AxisSet, AxisValues};
 use gwatt_motion::{Arc, FeedMode, Move, MoveKind, Step, Stray, hold_to_path, path_length};
 use gwatt_syntax::source::Span;
 
@@ -349,18 +349,11 @@ impl Control<'_> {
                     .help("write the feed: F…");
                 return None;
             }
-            None if self.machine.controller.language.family == Family::Marlin => {
-                let message = "no F yet: the first moves count at the speed limits of the axes";
-                run.report.note_once("no-feed-yet", message, span);
-                return Some(f64::INFINITY);
-            }
-            None if self.is_siemens() => {
-                let message = "no F in force: the control's data (SD42110) say which feed then; \
-                               counted at the speed limits of the axes";
-                run.report.note_once("no-feed-yet", message, span);
-                return Some(f64::INFINITY);
-            }
             None => {
+                if let Some(message) = self.rules.without_feed {
+                    run.report.note_once("no-feed-yet", message, span);
+                    return Some(f64::INFINITY);
+                }
                 run.report
                     .error("no-feed", "a feed move, but no F is in force", span)
                     .help("write F in this block or before; after G93, G94 or G95 it must be written again");

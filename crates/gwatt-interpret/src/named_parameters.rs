@@ -4,7 +4,7 @@
 use super::code::Motion;
 use super::control::Control;
 use super::modal::Feed;
-use gwatt_machine::Family;
+use crate::rules::Macros;
 use gwatt_motion::FeedMode;
 
 /// The version that gwatt follows: 2.9.
@@ -14,7 +14,7 @@ impl Control<'_> {
     /// The value of a predefined parameter, by its name in small letters
     /// without `#<` and `>`; `None` for other names, and for what is not known.
     pub(super) fn named_parameter(&self, name: &str) -> Option<f64> {
-        if self.machine.controller.language.family != Family::Rs274 {
+        if self.rules.macros != Macros::OWords {
             return None;
         }
         let name = name.strip_prefix('_')?;

@@ -5,6 +5,7 @@
 //! machine's own unit ("Parameters", "Coordinate Systems"). They are kept here
 //! the same way, for every family: G54 to G59 are at the same numbers in Fanuc.
 
+use crate::rules::rules_of;
 use std::collections::BTreeMap;
 
 use super::Reading;
@@ -12,7 +13,7 @@ use super::frame::{Affine, Frame};
 use super::given::GivenVariable;
 use super::parameter_file::ParameterFile;
 use gwatt_machine::units::MM_PER_INCH;
-use gwatt_machine::{AXES, AxisId, AxisKind, AxisSet, AxisValues, Family, Machine};
+use gwatt_machine::{AXES, AxisId, AxisKind, AxisSet, AxisValues, Machine};
 
 /// First and last of the parameters that are kept.
 pub(super) const FIRST: u32 = 5161;
@@ -108,9 +109,9 @@ impl Offsets {
         for (number, value) in parameters.into_iter().flat_map(ParameterFile::iter) {
             offsets.set_stored(number, value);
         }
-        let rs274 = machine.controller.language.family == Family::Rs274;
+        let stored = rules_of(&machine.controller.language).places_in_parameters;
         for (number, value) in reading.given.iter().filter_map(GivenVariable::number) {
-            if rs274 {
+            if stored {
                 offsets.set_stored(number, value);
             }
         }

@@ -12,11 +12,11 @@
 mod control;
 mod variables;
 
+use crate::rules::Macros;
 use std::collections::HashMap;
 
 use super::expression::{Held, Name, Value};
 use super::parameter_file::ParameterFile;
-use gwatt_machine::Family;
 
 /// Numbers that belong to the subroutine that runs, and 0.
 pub(super) const LOCALS: usize = 34;
@@ -60,14 +60,14 @@ struct Saved {
 }
 
 impl Parameters {
-    pub(super) fn new(family: Family) -> Self {
+    pub(super) fn new(macros: Macros) -> Self {
         Self {
             numbered: HashMap::new(),
             locals: [Ok(None); LOCALS],
             named: HashMap::new(),
             local_names: HashMap::new(),
             callers: Vec::new(),
-            own: if family == Family::Rs274 { 31 } else { 34 },
+            own: if macros == Macros::OWords { 31 } else { 34 },
             complete: false,
             line: 0,
         }

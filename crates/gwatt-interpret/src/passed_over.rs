@@ -24,7 +24,7 @@ impl Control<'_> {
             }
             return true;
         }
-        if block.tape && self.isg.is_none() {
+        if block.tape && !self.rules.percent_names_programs {
             // The first `%` opens the tape; one after any block ends it.
             self.ended = self.begun;
             return true;

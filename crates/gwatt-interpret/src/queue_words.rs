@@ -5,7 +5,7 @@ use super::code::GCode;
 use super::control::{Control, Run};
 use super::places::EXTRUDER;
 use super::report::Report;
-use gwatt_machine::{CornerRule, Family, MESSAGES};
+use gwatt_machine::{CornerRule, MESSAGES};
 use gwatt_motion::{Action, ActionKind, Corner, Step};
 use gwatt_syntax::Block;
 use gwatt_syntax::source::Span;
@@ -15,9 +15,7 @@ impl Control<'_> {
     pub(super) fn abort(&self, block: &Block, report: &mut Report<'_, '_>) {
         let text = report.text.get(..block.text_end as usize);
         let comment = text.and_then(|text| Some((text, memchr::memrchr(b'(', text)?)));
-        let Some((text, start)) =
-            comment.filter(|_| self.machine.controller.language.family == Family::Rs274)
-        else {
+        let Some((text, start)) = comment.filter(|_| self.rules.comments_act) else {
             return;
         };
         let inside = text.get(start + 1..).unwrap_or_default();
@@ -107,7 +105,7 @@ impl Control<'_> {
         let text = text.get(..block.text_end as usize).unwrap_or(text);
         if text.trim_ascii_end().ends_with(b")")
             && self.plans_ahead()
-            && self.machine.controller.language.family == Family::Rs274
+            && self.rules.comments_act
             && !self.ended
             && !self.block_delete.passes(block.delete_level)
             && let Some(place) = message(text)

@@ -4,8 +4,9 @@ use super::control::{Control, Run};
 use super::letters::bit;
 use super::offsets::REFERENCE;
 use super::places::POSITION_MAX_MM;
+use crate::rules::BareG92;
 use arrayvec::ArrayVec;
-use gwatt_machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family, RapidPath};
+use gwatt_machine::{ALL_AXES, AXES, AxisSet, AxisValues, RapidPath};
 use gwatt_motion::MoveKind;
 use gwatt_syntax::source::Span;
 
@@ -23,7 +24,7 @@ impl Control<'_> {
         self.refuse_turned(named, span, run);
         if named.is_empty() {
             let language = &self.machine.controller.language;
-            if language.family == Family::Iso && !language.dialect.g28_all {
+            if self.rules.returns_name_axes && !language.dialect.g28_all {
                 run.report
                     .error("reference-axes", "a reference point without axes", span)
                     .help("name the axes, as in G28 G91 Z0");
@@ -57,7 +58,7 @@ impl Control<'_> {
         let unknown = AxisSet(named.0 & self.position.unknown.0);
         let rapid_factor = self.knobs.rapid_factor;
         // On LinuxCNC and grbl G28 is a rapid; only homing has speeds of its own.
-        let is_rapid = self.machine.controller.language.family == Family::Rs274;
+        let is_rapid = self.rules.returns_are_rapids;
         if second == 0 && !is_rapid {
             self.knobs.rapid_factor *= self.return_factor(&home, named, unknown);
         }
@@ -75,7 +76,7 @@ impl Control<'_> {
         run: &mut Run<'_, '_>,
     ) -> AxisValues {
         let offsets = self.position.offsets();
-        if self.machine.controller.language.family == Family::Rs274 {
+        if self.rules.places_in_parameters {
             let point = offsets.axes_from(REFERENCE[second]);
             if !offsets.known && point == [0.0; AXES] {
                 note_machine_zero(span, run);
@@ -140,7 +141,7 @@ impl Control<'_> {
 
     /// TF5200, "Reference point offset (G92)": the values are the offset itself,
     /// under G91 what is added to it.
-    fn isg_offset(&mut self, words: &[(usize, f64)], run: &mut Run<'_, '_>) {
+    fn give_offset(&mut self, words: &[(usize, f64)], run: &mut Run<'_, '_>) {
         for &(axis, value) in words {
             let letter = ALL_AXES[axis].letter();
             run.words.take(letter);
@@ -157,24 +158,23 @@ impl Control<'_> {
 
     pub(super) fn set_offset(&mut self, span: Span, run: &mut Run<'_, '_>) {
         let mut words: ArrayVec<(usize, f64), AXES> = run.words.axes().collect();
-        if self.isg.is_some() {
-            return self.isg_offset(&words, run);
+        if self.rules.g92_gives_offset {
+            return self.give_offset(&words, run);
         }
         if self.refuse_while_turned(span, run) {
             return;
         }
         if words.is_empty() {
-            if run.words.present & bit(b'S') != 0
-                && self.machine.controller.language.family == Family::Iso
-            {
-                // G92 S: the clamp of the spindle.
-                return;
-            }
-            if self.machine.controller.language.family != Family::Marlin {
-                run.report
-                    .error("offset-axes", "G92 without axes", span)
-                    .help("name the axes, as in G92 X0");
-                return;
+            let clamps = run.words.present & bit(b'S') != 0;
+            match self.rules.bare_g92 {
+                BareG92::Clamp if clamps => return,
+                BareG92::Clamp | BareG92::Refused => {
+                    run.report
+                        .error("offset-axes", "G92 without axes", span)
+                        .help("name the axes, as in G92 X0");
+                    return;
+                }
+                BareG92::AllAxes => {}
             }
             words = self
                 .machine
@@ -192,7 +192,7 @@ impl Control<'_> {
             }
             let frame = &self.position.frame;
             let unknown = self.position.unknown;
-            if self.machine.controller.language.family == Family::Marlin {
+            if self.rules.relative_places {
                 // Only differences of positions matter to a printer.
                 self.position.unknown.0 &= !(1 << axis);
             } else if unknown.iter().any(|by| frame.depends(by, axis)) {

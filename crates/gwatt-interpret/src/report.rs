@@ -1,9 +1,10 @@
 //! Collects what is to be said about a program while it is read.
 
+use crate::rules::rules_of;
 use std::collections::HashSet;
 
-use super::g_codes::{code_number, refused_g_name, refused_m_name};
-use gwatt_machine::{Family, Language};
+use super::g_codes::{code_number, refused_m_name};
+use gwatt_machine::Language;
 use gwatt_syntax::Word;
 use gwatt_syntax::diagnostic::{Diagnostic, Severity};
 use gwatt_syntax::source::Span;
@@ -78,13 +79,8 @@ impl Report<'_, '_> {
 
     /// Reports a G word that is not supported.
     pub(super) fn refused_g(&mut self, word: Word, language: &Language) {
-        let name = code_number(word.value).map_or("a word", |number| {
-            let own = super::osp::codes::refused_name(number).filter(|_| language.dialect.osp);
-            match language.family {
-                Family::Siemens => super::siemens::codes::refused_name(number),
-                _ => own.unwrap_or_else(|| refused_g_name(number)),
-            }
-        });
+        let name = code_number(word.value)
+            .map_or("a word", |number| (rules_of(language).refused_g)(number));
         self.refused(b'G', word, name);
     }
 

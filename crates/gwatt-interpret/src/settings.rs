@@ -6,7 +6,7 @@ use super::control::{Control, Run};
 use super::feed_expression::expression_of;
 use super::g_codes::path_mode;
 use super::modal::{Feed, NumberText};
-use gwatt_machine::{Family, PathMode};
+use gwatt_machine::PathMode;
 use gwatt_motion::{ActionKind, Corner, FeedMode};
 use gwatt_syntax::source::Span;
 
@@ -29,7 +29,7 @@ impl Control<'_> {
     /// block; the others in the unit that the block itself sets.
     pub(super) fn read_feed(&mut self, run: &mut Run<'_, '_>) {
         let mut mm_per_unit = self.modal.mm_per_unit;
-        if self.machine.controller.language.family != Family::Rs274 {
+        if !self.rules.feed_in_old_unit {
             for (code, ..) in &run.words.g {
                 if let GCode::Units { mm_per_unit: unit } = code {
                     mm_per_unit = *unit;
@@ -121,7 +121,8 @@ impl Control<'_> {
 
     /// The ISG kernel ends a turn where the plane changes, with a warning.
     fn choose_plane(&mut self, plane: [usize; 3], span: Span, run: &mut Run<'_, '_>) {
-        if self.isg.is_none() || plane == self.modal.plane || !self.refuse_while_turned(span, run) {
+        let ends_turn = self.rules.plane_ends_turn && plane != self.modal.plane;
+        if !ends_turn || !self.refuse_while_turned(span, run) {
             self.modal.plane = plane;
         }
     }
@@ -195,7 +196,7 @@ impl Control<'_> {
                 continue;
             };
             // Of P and X one may be the time and the other a motion.
-            if seconds.is_some() && language.family != Family::Marlin {
+            if seconds.is_some() && !self.rules.lenient_dwell {
                 run.report
                     .error("dwell-time", "two words could be the time of G4", span)
                     .help("write the dwell in a block of its own, with one time");
@@ -217,7 +218,7 @@ impl Control<'_> {
                     .error("dwell-time", message, span)
                     .help("write a time from 0 to 1e9 s");
             }
-            None if language.family == Family::Marlin => return Some(0.0),
+            None if self.rules.lenient_dwell => return Some(0.0),
             None => {
                 let letters: Vec<_> = language
                     .dwell

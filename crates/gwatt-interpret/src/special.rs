@@ -7,7 +7,8 @@ use super::code::{GCode, Motion};
 use super::cycle::Held;
 use super::position::Reading;
 use super::spline::Spline;
-use gwatt_machine::{AxisValues, Family, Language, Machine};
+use crate::rules::{CycleWords, LanguageRules, rules_of};
+use gwatt_machine::{AxisValues, Language};
 
 /// Moves that one block may make: they are held in memory together.
 const MOVES_OF_A_BLOCK: usize = 100_000;
@@ -66,14 +67,14 @@ pub(super) struct Special {
 }
 
 impl Special {
-    pub(super) fn new(machine: &Machine, reading: &Reading) -> Self {
+    pub(super) fn new(rules: &LanguageRules, reading: &Reading) -> Self {
         Self {
             active: 0,
             held: Held::default(),
             spline: Spline::default(),
             // LinuxCNC starts with G99 (as its interpreter shows), Fanuc and
             // Haas with G98.
-            to_initial: machine.controller.language.family != Family::Rs274,
+            to_initial: rules.cycles != CycleWords::Rs274,
             spindle: Turning::Stopped,
             left: None,
             before: Motion::None,
@@ -100,8 +101,9 @@ impl Special {
 
 /// The special motion word with this number × 10.
 pub(super) fn special_code(number: u16, language: &Language) -> Option<GCode> {
-    let rs274 = language.family == Family::Rs274;
-    let cycles = language.mill_cycles && matches!(language.family, Family::Rs274 | Family::Iso);
+    let words = rules_of(language).cycles;
+    let rs274 = words == CycleWords::Rs274;
+    let cycles = language.mill_cycles && words != CycleWords::None;
     match number {
         382..=385 if rs274 => {}
         50..=53 | 330 | 331 if rs274 && cycles => {}

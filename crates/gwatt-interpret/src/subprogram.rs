@@ -9,7 +9,7 @@ use super::expression::Value;
 use super::jump::{Call, Target, Transfer};
 use super::label::Label;
 use super::parameters::LOCALS;
-use gwatt_machine::Family;
+use crate::rules::Macros;
 use gwatt_syntax::Word;
 use gwatt_syntax::source::Span;
 
@@ -49,9 +49,9 @@ impl Control<'_> {
         span: Span,
         run: &mut Run<'_, '_>,
     ) -> bool {
-        let family = self.machine.controller.language.family;
+        let macros = self.rules.macros;
         let calls = matches!(number, 980 | 990);
-        if calls && family == Family::Rs274 && run.block.words.iter().any(other_word) {
+        if calls && macros == Macros::OWords && run.block.words.iter().any(other_word) {
             run.report
                 .error(
                     "subprogram",
@@ -61,18 +61,18 @@ impl Control<'_> {
                 .help("write M98 and M99 in blocks of their own");
             return true;
         }
-        match (family, number) {
+        match (macros, number) {
             // M198 calls a program that stands in another memory.
-            (Family::Rs274 | Family::Iso, 980) | (Family::Iso, 970 | 1980) => {
+            (Macros::OWords | Macros::MacroB, 980) | (Macros::MacroB, 970 | 1980) => {
                 let local = number == 970;
                 if let Some(call) = self.call(local, span, run) {
                     self.transfer = Some(Transfer::Call(call));
                 }
             }
-            (Family::Rs274 | Family::Iso, 990) => {
+            (Macros::OWords | Macros::MacroB, 990) => {
                 // LinuxCNC returns to after the call only.
-                let block = match family {
-                    Family::Rs274 => None,
+                let block = match macros {
+                    Macros::OWords => None,
                     _ => run.words.take(b'P').map(|block| block.max(0.0) as u64),
                 };
                 self.transfer = Some(Transfer::Return { block });
@@ -101,11 +101,7 @@ impl Control<'_> {
             return None;
         };
         let repeat = times;
-        if times.is_none()
-            && !local
-            && program > 9999
-            && self.machine.controller.language.family == Family::Iso
-        {
+        if times.is_none() && !local && program > 9999 && self.rules.macros == Macros::MacroB {
             return Some(Call {
                 target: Target::Short(program),
                 times: 1,

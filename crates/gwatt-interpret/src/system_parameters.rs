@@ -5,7 +5,7 @@
 
 use super::control::Control;
 use super::offsets::{FIRST, LAST, PARAMETER_AXES};
-use gwatt_machine::Family;
+use crate::rules::Macros;
 
 /// Coordinates and success of the last probing.
 pub(super) const PROBE_FIRST: u32 = 5061;
@@ -22,7 +22,7 @@ const PLACE_LAST: u32 = 5428;
 impl Control<'_> {
     /// Whether a number is one of these parameters, known or not.
     pub(super) fn is_system_parameter(&self, number: u32) -> bool {
-        self.machine.controller.language.family == Family::Rs274
+        self.rules.macros == Macros::OWords
             && matches!(
                 number,
                 PROBE_FIRST..=PROBE_LAST

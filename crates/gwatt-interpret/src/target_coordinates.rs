@@ -4,7 +4,7 @@
 use super::control::{Control, Run};
 use super::frame::sin_cos_deg;
 use super::letters::{AXIS_LETTERS, POLAR, bit};
-use gwatt_machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family};
+use gwatt_machine::{ALL_AXES, AXES, AxisSet, AxisValues};
 use gwatt_syntax::source::Span;
 
 impl Control<'_> {
@@ -93,7 +93,7 @@ impl Control<'_> {
         if !machine_coordinates {
             self.map_targets(&program, named, unknown, end, run);
         }
-        if self.machine.controller.language.family == Family::Iso {
+        if self.rules.leaves_axes_adrift {
             self.name_adrift(named, unknown, machine_coordinates, whole, run);
         }
         if end

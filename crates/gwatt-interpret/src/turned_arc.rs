@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use super::control::{Control, Run};
 use super::{frame, stray};
-use gwatt_machine::{AxisSet, AxisValues, Family};
+use gwatt_machine::{AxisSet, AxisValues};
 use gwatt_motion::{Arc, FeedMode, MoveKind, Step, Stray};
 use gwatt_syntax::source::Span;
 
@@ -93,7 +93,7 @@ impl Control<'_> {
     fn tilted_by_turn(&mut self, tilted: &Tilted<'_>, run: &mut Run<'_, '_>) -> bool {
         let normal = self.modal.plane[2];
         let [start, end] = tilted.ends;
-        if self.machine.controller.language.family != Family::Rs274
+        if !self.rules.turns_tilt_arcs
             || (end[normal] - start[normal]).abs() > ROUNDING_MM
             || !self.position.frame.keeps_circles()
         {

@@ -4,12 +4,12 @@ use arrayvec::ArrayVec;
 
 use super::code::{GCode, Motion};
 use super::dialect::{Own, dialect_code};
-use super::g_codes::{code_number, exact_once, g_code};
-use super::lathe_cycle::lathe_cycle_code;
+use super::g_codes::{code_number, exact_once};
 use super::letters::{AXIS_LETTERS, POLAR, SLOTS, bit, letter_of, slot};
 use super::report::Report;
 use super::special::special_code;
-use gwatt_machine::{Controller, Family};
+use crate::rules::rules_of;
+use gwatt_machine::Controller;
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, Word};
 
@@ -95,7 +95,7 @@ impl Words {
                     }
                 }
                 b'A'..=b'Z' => self.add(index, word, report),
-                b'@' | b'^' if controller.language.family == Family::Rs274 => {
+                b'@' | b'^' if rules_of(&controller.language).polar_words => {
                     self.add(index, word, report);
                 }
                 b'*' if block.number.is_some() => {
@@ -188,9 +188,8 @@ impl Words {
                     Own::Common => {}
                 }
             }
-            g_code(number, controller.language.family)
+            (rules_of(&controller.language).g_code)(number)
                 .or_else(|| special_code(number, &controller.language))
-                .or_else(|| lathe_cycle_code(number, controller.language.family))
                 .or_else(|| exact_once(number, &controller.language))
                 .or_else(ignored)
                 .map(|code| (code, number))

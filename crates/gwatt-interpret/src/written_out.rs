@@ -57,17 +57,17 @@ impl Interpreter<'_> {
         let control = &self.control;
         let language = &control.machine.controller.language;
         let lathe = language.dialect.lathe.is_some();
-        let offsets_unknown = if control.osp.is_some() {
-            control.tools.selected != 0
-        } else {
+        let offsets_unknown = if control.rules.t_selects_offset {
             control.tools.length_guessed
+        } else {
+            control.tools.selected != 0
         };
         if lathe && offsets_unknown {
             return Some(
                 "the offsets of the lathe's tool are not known: give them with --tool-table",
             );
         }
-        if control.is_siemens() {
+        if control.rules.returns_suspend_frames {
             // The places are those of the machine there, whatever the frames are.
             let off = control.tools.selected == 0 || control.choice.number == Some(0);
             return (!off).then_some("the length of the tool is in force: write D0 before it");

@@ -8,7 +8,7 @@
 
 use crate::code::GCode;
 use crate::control::{Control, Run};
-use gwatt_machine::Family;
+use crate::rules::ToolLengths;
 use gwatt_syntax::source::Span;
 
 impl Control<'_> {
@@ -26,16 +26,15 @@ impl Control<'_> {
                 _ => {}
             }
         }
-        let rs274 = self.machine.controller.language.family == Family::Rs274;
         let switches = run.words.groups & GCode::CompensationOff.group() != 0;
-        if !rs274 && run.words.has(b'D') && !switches {
+        if self.rules.offset_numbers_stay && run.words.has(b'D') && !switches {
             let span = run.words.span(b'D', run.block);
             refuse("another radius", span, run);
         }
         for index in 0..run.words.m.len() {
             let (number, span) = run.words.m[index];
             if let Some(what) = m_name(number)
-                && (number == 60 || rs274)
+                && (number == 60 || self.rules.strict_compensation)
             {
                 refuse(what, span, run);
             }
@@ -50,21 +49,19 @@ impl Control<'_> {
     /// compensation as elsewhere: path modes, lengths along the normal axis,
     /// the level that cycles return to, exact stop.
     fn permits(&self, number: u16) -> bool {
-        let family = self.machine.controller.language.family;
         let normal = self.modal.plane[2] == 2;
         match number {
-            610 | 611 | 640 | 980 | 990 => family != Family::Rs274,
-            430 | 440 | 490 => family == Family::Iso && normal,
+            610 | 611 | 640 | 980 | 990 => !self.rules.strict_compensation,
+            430 | 440 | 490 => normal && self.rules.tool_lengths == ToolLengths::Offsets,
             _ => false,
         }
     }
 
     /// Words that come after it.
     pub(super) fn refuse_behind(&self, run: &mut Run<'_, '_>) {
-        let rs274 = self.machine.controller.language.family == Family::Rs274;
         for index in 0..run.words.g.len() {
             let (_, number, span) = run.words.g[index];
-            if number == 100 && rs274 && !sets_offsets(run) {
+            if number == 100 && self.rules.strict_compensation && !sets_offsets(run) {
                 continue;
             }
             if self.permits(number) {

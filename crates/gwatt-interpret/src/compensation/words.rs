@@ -5,7 +5,7 @@ use super::{Compensation, State};
 use crate::code::GCode;
 use crate::control::{Control, Run};
 use gwatt_machine::units::MM_PER_INCH;
-use gwatt_machine::{CompensationCorner, CompensationLead, CutterCompensation, Family};
+use gwatt_machine::{CompensationCorner, CompensationLead, CutterCompensation};
 use gwatt_syntax::source::Span;
 
 /// Planes that can be compensated, by their normal axis: XY and ZX.
@@ -89,7 +89,7 @@ impl Control<'_> {
         let Some(compensation) = self
             .compensation
             .as_mut()
-            .filter(|_| self.machine.controller.language.family == Family::Siemens)
+            .filter(|_| self.rules.compensation_changes)
         else {
             return;
         };
@@ -238,7 +238,7 @@ impl Control<'_> {
             }
             return Some(style);
         }
-        if matches!(language.family, Family::Iso | Family::Isg) {
+        if self.rules.corners_may_be_unknown {
             // Enough for a radius of 0; see `refuse_style`.
             return Some(CutterCompensation {
                 corner: CompensationCorner::Line,

@@ -7,13 +7,11 @@
 //! a word of G0 to G3.
 
 use crate::control::{Control, Run};
+use crate::own_state::OwnState;
 use crate::special::Turning;
 use gwatt_machine::{ALL_AXES, AxisSet, AxisValues};
 use gwatt_motion::CYCLE as FIXED;
 use gwatt_motion::{ActionKind, FeedMode, MoveKind};
-
-/// Dwells without a decimal point are in milliseconds.
-const MILLISECOND_S: f64 = 1e-3;
 
 /// One hole, in machine coordinates.
 struct Hole {
@@ -59,7 +57,7 @@ impl Control<'_> {
         let Some(unknown) = self.targets(run, false, &mut place) else {
             return;
         };
-        let keeps = self.osp.as_ref().is_some_and(|osp| osp.only_keeps);
+        let keeps = matches!(&self.own, OwnState::Osp(osp) if osp.only_keeps);
         if repeats == 0
             || keeps
             || self
@@ -112,7 +110,7 @@ impl Control<'_> {
 
     /// The level that the cycle returns to.
     fn iso_clear(&mut self, r_mm: f64, initial_mm: f64, run: &mut Run<'_, '_>) -> Option<f64> {
-        if self.osp.is_some() {
+        if self.rules.cycle_levels_by_m {
             return self.osp_clear(r_mm, run);
         }
         Some(if self.special.to_initial {
@@ -211,12 +209,12 @@ impl Control<'_> {
         let own = run.words.take(b'P');
         if let (Some(value), Some(word)) = (own, word) {
             let point = word.number.of(run.report.text).contains(&b'.');
-            // OSP takes P in seconds.
-            let seconds = if point || self.osp.is_some() {
-                value
+            let unit_s = if point {
+                1.0
             } else {
-                value * MILLISECOND_S
+                self.rules.whole_cycle_dwell_s
             };
+            let seconds = value * unit_s;
             if !(0.0..=1e9).contains(&seconds) {
                 run.cycle_value(b'P', "the dwell is negative or beyond reason");
                 return Err(());

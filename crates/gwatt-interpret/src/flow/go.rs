@@ -17,7 +17,7 @@ impl Flow {
         word: Go,
         interpreter: &mut Interpreter<'_>,
     ) -> Result<(), FlowError> {
-        self.is_isg = interpreter.is_isg();
+        self.percent_names_programs = interpreter.percent_names_programs();
         match word {
             Go::Next | Go::If(true) | Go::Loop(true) | Go::Again(false) => {}
             Go::Main => {
@@ -70,7 +70,7 @@ impl Flow {
     }
 
     fn landmarks(&mut self, text: usize) -> Result<&Landmarks, FlowError> {
-        let dollar = self.is_isg;
+        let dollar = self.percent_names_programs;
         let text = self.texts.get_mut(text);
         text.map(|text| text.landmarks(dollar))
             .ok_or_else(|| FlowError::new("flow", "there is no such text", ""))

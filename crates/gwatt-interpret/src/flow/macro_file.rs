@@ -54,7 +54,7 @@ impl Flow {
         let message = "the subprogram ends without a return";
         let help = if self.is_siemens {
             "end it with M17 or RET"
-        } else if self.is_isg {
+        } else if self.percent_names_programs {
             "end it with M17 or M29"
         } else {
             "end it with M99, or endsub"

@@ -69,7 +69,7 @@ pub struct Flow {
     /// It is a program of SINUMERIK.
     is_siemens: bool,
     /// It is one of the ISG kernel, whose `%` lines are executed.
-    is_isg: bool,
+    percent_names_programs: bool,
     /// Sections that are repeated.
     sections: Vec<Section>,
     /// Texts that were loaded by the names of their subprograms.
@@ -148,7 +148,7 @@ impl Flow {
             idle_lines: 0,
             again: false,
             is_siemens: false,
-            is_isg: false,
+            percent_names_programs: false,
             sections: Vec::new(),
             named: Vec::new(),
         }
@@ -180,7 +180,7 @@ impl Flow {
                 // The header of the next program.
                 return Err(self.without_return());
             }
-            if tape && self.next.text > 0 && !self.is_isg {
+            if tape && self.next.text > 0 && !self.percent_names_programs {
                 self.next.line += 1;
                 continue;
             }

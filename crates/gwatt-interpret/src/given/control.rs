@@ -3,7 +3,8 @@
 use super::{Given, GivenVariable, TOOL_OF_FANUC};
 use crate::control::Control;
 use crate::expression::Name;
-use gwatt_machine::Family;
+use crate::own_state::OwnState;
+use crate::rules::Macros;
 
 impl Control<'_> {
     /// Takes over what was given.
@@ -13,9 +14,7 @@ impl Control<'_> {
             Given::Number(number) if self.is_system_parameter(*number) => {
                 self.give_system_parameter(*number, value);
             }
-            Given::Number(TOOL_OF_FANUC)
-                if self.machine.controller.language.family == Family::Iso =>
-            {
+            Given::Number(TOOL_OF_FANUC) if self.rules.macros == Macros::MacroB => {
                 self.tools.give(value);
             }
             // There are fewer than a program may keep.
@@ -28,12 +27,12 @@ impl Control<'_> {
                     .set(&Name::Text(name.into()), Ok(Some(value)));
             }
             Given::R(number) => {
-                if let Some(siemens) = &mut self.siemens {
+                if let OwnState::Siemens(siemens) = &mut self.own {
                     siemens.keep(*number, value);
                 }
             }
             Given::Common(name) => {
-                if let Some(osp) = &mut self.osp {
+                if let OwnState::Osp(osp) = &mut self.own {
                     osp.keep(name, value);
                 }
             }

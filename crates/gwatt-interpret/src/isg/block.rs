@@ -6,6 +6,7 @@ use crate::fast_path::is_direct;
 use crate::formula::{Cursor, Lexis, Outcome, Uses, whole_value};
 use crate::jump::Go;
 use crate::macro_block::{Note, not_finite};
+use crate::own_state::OwnState;
 use crate::report::Report;
 use gwatt_syntax::{Block, Word};
 
@@ -27,7 +28,7 @@ impl Control<'_> {
     /// not go on at the next line.
     #[cold]
     pub(crate) fn isg_words(&mut self, block: &mut Block, report: &mut Report<'_, '_>) -> bool {
-        let Some(mut state) = self.isg.take() else {
+        let Some(mut state) = self.own.take_isg() else {
             return false;
         };
         state.begun |= self.begun;
@@ -48,7 +49,7 @@ impl Control<'_> {
         // What stands in a comment or a declaration is no move.
         self.direct = is_direct(self.machine) && !state.comments && !state.declares;
         let system = state.systems.in_force();
-        self.isg = Some(state);
+        self.own = OwnState::Isg(state);
         self.place_system(system);
         transfers
     }
@@ -57,7 +58,7 @@ impl Control<'_> {
 impl Control<'_> {
     /// The value of an expression.
     pub(crate) fn isg_value(&mut self, text: &[u8]) -> Option<f64> {
-        let mut state = self.isg.take()?;
+        let mut state = self.own.take_isg()?;
         let mut reading = Reading {
             control: self,
             state: &mut state,
@@ -68,7 +69,7 @@ impl Control<'_> {
             dwells: false,
         };
         let value = whole_value(&mut Cursor::new(text, Lexis::Comments), &mut reading);
-        self.isg = Some(state);
+        self.own = OwnState::Isg(state);
         value
     }
 }

@@ -4,6 +4,7 @@
 //! point. Lines of plain words go the way of all languages; what is more is
 //! read here, word by word, and becomes plain words.
 
+pub(super) mod language;
 mod block;
 mod command;
 mod cycle;

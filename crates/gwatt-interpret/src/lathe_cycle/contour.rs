@@ -58,7 +58,7 @@ impl Interpreter<'_> {
         }
         let errors = report.diagnostics.errors;
         if !block.issues.is_empty() {
-            control.beyond_words(block, &mut report);
+            control.macro_words(block, &mut report);
             if report.diagnostics.errors != errors {
                 return None;
             }

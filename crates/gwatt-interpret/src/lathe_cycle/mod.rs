@@ -14,7 +14,6 @@ mod words;
 use super::code::GCode;
 use super::label::Label;
 use super::vector::Vector;
-use gwatt_machine::Family;
 
 const X: usize = 0;
 const Z: usize = 2;
@@ -93,7 +92,7 @@ impl Fault {
 }
 
 /// G70 to G72.2 of `LinuxCNC`.
-pub(super) fn lathe_cycle_code(number: u16, family: Family) -> Option<GCode> {
+pub(super) fn lathe_cycle_code(number: u16) -> Option<GCode> {
     let known = matches!(number, 700 | 710..=712 | 720..=722);
-    (family == Family::Rs274 && known).then_some(GCode::LatheCycle(number))
+    known.then_some(GCode::LatheCycle(number))
 }

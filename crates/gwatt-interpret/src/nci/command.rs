@@ -3,6 +3,7 @@
 use super::dynamics::PATH_AXES;
 use crate::control::Control;
 use crate::expression::Fault;
+use crate::own_state::OwnState;
 use gwatt_machine::AxisKind;
 use gwatt_syntax::Block;
 use gwatt_syntax::source::Span;
@@ -42,7 +43,7 @@ impl Control<'_> {
             let help = "write DynOvr=0.5; R parameters are not followed";
             return Err(Fault::new("knob-value", message, help, span));
         };
-        if let Some(nci) = &mut self.nci {
+        if let OwnState::Nci(nci) = &mut self.own {
             nci.dynamics.turn(share);
         }
         Ok(())
@@ -95,7 +96,7 @@ impl Control<'_> {
             if limits.iter().any(|limit| *limit <= 0.0) {
                 return fault("a limit of motion that is not above 0");
             }
-            if let Some(nci) = &mut self.nci {
+            if let OwnState::Nci(nci) = &mut self.own {
                 // One acceleration is planned with: the higher counts.
                 nci.dynamics.set(axis, &data, accel.max(brake), jerk);
             }

@@ -4,6 +4,7 @@
 //! at each point. Plain blocks, arcs and the commands that change accelerations are read;
 //! R parameters, jumps, subprograms and auxiliary axes are refused.
 
+pub(super) mod language;
 pub(super) mod codes;
 mod command;
 mod dynamics;

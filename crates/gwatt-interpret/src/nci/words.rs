@@ -4,6 +4,7 @@ use super::plain_word;
 use crate::code::Motion;
 use crate::control::{Control, Run};
 use crate::expression::Fault;
+use crate::own_state::OwnState;
 use crate::report::Report;
 use gwatt_machine::PathMode;
 use gwatt_syntax::{Block, Word};
@@ -63,9 +64,12 @@ impl Control<'_> {
 
     /// Before a block is executed: what commands for accelerations have changed.
     pub(crate) fn take_dynamics(&mut self, run: &mut Run<'_, '_>) {
-        let Some(nci) = self.nci.as_mut().filter(|nci| nci.is_active()) else {
+        let OwnState::Nci(nci) = &mut self.own else {
             return;
         };
+        if !nci.is_active() {
+            return;
+        }
         run.facts.turns_knob = true;
         nci.dynamics.act(self.machine, &mut self.knobs);
     }

@@ -6,6 +6,7 @@ use crate::expression::Fault;
 use crate::formula::{Cursor, Lexis, Outcome, Uses, whole_value};
 use crate::jump::Go;
 use crate::macro_block::{Note, not_finite};
+use crate::own_state::OwnState;
 use crate::report::Report;
 use gwatt_syntax::{Block, Word};
 
@@ -24,12 +25,12 @@ impl Control<'_> {
     /// not go on at the next line.
     #[cold]
     pub(crate) fn osp_words(&mut self, block: &mut Block, report: &mut Report<'_, '_>) -> bool {
-        let Some(mut state) = self.osp.take() else {
+        let OwnState::Osp(state) = &mut self.own else {
             return false;
         };
         let text = report.text.get(..block.text_end as usize);
         let mut reading = Reading {
-            state: &mut state,
+            state,
             cursor: Cursor::new(text.unwrap_or(report.text), Lexis::Comments),
             notes: Vec::new(),
             uses: Uses::default(),
@@ -38,7 +39,6 @@ impl Control<'_> {
         let read = reading.read(block);
         let notes = reading.notes;
         self.begun |= read.is_ok();
-        self.osp = Some(state);
         self.take_reading(read, notes, block, report)
     }
 }
@@ -46,7 +46,9 @@ impl Control<'_> {
 impl Control<'_> {
     /// The value of an expression.
     pub(crate) fn osp_value(&mut self, text: &[u8]) -> Option<f64> {
-        let state = self.osp.as_deref_mut()?;
+        let OwnState::Osp(state) = &mut self.own else {
+            return None;
+        };
         let mut reading = Reading {
             state,
             cursor: Cursor::new(text, Lexis::Comments),

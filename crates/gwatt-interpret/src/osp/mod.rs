@@ -4,6 +4,7 @@
 //! "Tables of Command Codes" of 4203-E (OSP7030M); sections are named at each
 //! point. Blocks that are more than plain words are read here, word by word.
 
+pub(super) mod language;
 mod block;
 pub(super) mod code;
 pub(super) mod codes;

@@ -3,7 +3,7 @@
 use super::{UNDER_COMPENSATION, is_tool};
 use crate::control::Control;
 use crate::expression::{KEPT, PROBED, Read, TOOL, Variables};
-use gwatt_machine::Family;
+use crate::rules::Macros;
 
 impl Variables for Control<'_> {
     fn numbered(&self, number: u32) -> Read {
@@ -59,6 +59,6 @@ impl Variables for Control<'_> {
     }
 
     fn fanuc(&self) -> bool {
-        self.machine.controller.language.family != Family::Rs274
+        self.rules.macros != Macros::OWords
     }
 }

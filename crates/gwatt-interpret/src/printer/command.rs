@@ -4,10 +4,9 @@ use super::line::{Head, Parameters, Text, has, value};
 use super::verify_checksum;
 use crate::code::{GCode, Motion};
 use crate::control::{Control, Run};
-use crate::g_codes::g_code;
 use crate::report::Report;
 use crate::tools::ToolLength;
-use gwatt_machine::{Command, ExtruderMode, Family};
+use gwatt_machine::{Command, ExtruderMode};
 use gwatt_motion::{ActionKind, Step};
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, Word};
@@ -140,7 +139,7 @@ impl Control<'_> {
         if letter == b'M' {
             return self.passes(letter, number) || number == 300;
         }
-        match g_code(number, Family::Marlin) {
+        match (self.rules.g_code)(number) {
             Some(GCode::Absolute(absolute)) => absolute == self.modal.absolute,
             Some(GCode::Units { mm_per_unit }) => mm_per_unit == self.modal.mm_per_unit,
             Some(GCode::Plane(plane)) => plane == self.modal.plane,

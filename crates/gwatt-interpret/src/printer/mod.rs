@@ -6,6 +6,7 @@
 //! ("G-Codes", "Commands templates"). What a firmware does of itself, as
 //! homing, probing or changing the tool, is priced from an unknown start.
 
+pub(super) mod language;
 mod arc;
 mod command;
 mod heat;
@@ -17,13 +18,14 @@ mod retract;
 mod scale;
 mod settings;
 
+use crate::rules::rules_of;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::position::Reading;
 use super::report::Report;
-use gwatt_machine::{AXES, AxisSet, AxisValues, Controller, Family, Machine, Retract};
+use gwatt_machine::{AXES, AxisSet, AxisValues, Controller, Machine, Retract};
 use gwatt_syntax::{Block, Word};
 use kept::{SavedPosition, SavedState};
 
@@ -100,17 +102,14 @@ pub(super) struct Course<'a> {
 
 /// Whether a line has to be read as a printer's command: not one of axis words
 /// under G0 to G3.
-#[inline]
-pub(super) fn is_command(machine: &Machine, block: &Block) -> bool {
-    machine.controller.language.family == Family::Marlin && {
-        match block.words.first() {
-            _ if !block.issues.is_empty() => true,
-            Some(first) => match first.letter {
-                b'G' => !(0.0..4.0).contains(&first.value),
-                letter => matches!(letter, b'M' | b'T'),
-            },
-            None => false,
-        }
+fn is_command(block: &Block) -> bool {
+    match block.words.first() {
+        _ if !block.issues.is_empty() => true,
+        Some(first) => match first.letter {
+            b'G' => !(0.0..4.0).contains(&first.value),
+            letter => matches!(letter, b'M' | b'T'),
+        },
+        None => false,
     }
 }
 
@@ -118,7 +117,7 @@ pub(super) fn is_command(machine: &Machine, block: &Block) -> bool {
 ///
 /// Source: `RepRap` wiki, "G-code", "Checking"; Marlin ignores blanks before N.
 pub(super) fn verify_checksum(star: Word, controller: &Controller, report: &mut Report<'_, '_>) {
-    if controller.language.family != Family::Marlin {
+    if !rules_of(&controller.language).checksums {
         return;
     }
     let before = report.text.get(..star.span.start as usize);

@@ -5,7 +5,7 @@ use crate::control::{Control, Run};
 use crate::data_setting::out_of_range;
 use crate::frame::{Affine, SPACE, sin_cos_deg};
 use crate::offsets::{FURTHER, FURTHER_MAX, Offsets};
-use gwatt_machine::{ALL_AXES, AXES, AxisSet, AxisValues, Family};
+use gwatt_machine::{ALL_AXES, AXES, AxisSet, AxisValues};
 use gwatt_syntax::source::Span;
 
 /// A factor. Without a point it is in thousandths on one control and in
@@ -242,7 +242,7 @@ impl Control<'_> {
         let turned = named
             .iter()
             .any(|axis| (0..AXES).any(|by| by != axis && frame.depends(axis, by)));
-        if turned && self.machine.controller.language.family == Family::Iso {
+        if turned && self.rules.no_turned_machine_places {
             run.report
                 .error(
                     "turned-machine",
@@ -347,7 +347,7 @@ impl Control<'_> {
         if self.refuse_while_turned(span, run) {
             return;
         }
-        let rs274 = self.machine.controller.language.family == Family::Rs274;
+        let as_g92 = self.rules.g52_is_g92;
         for (axis, value) in words {
             let letter = ALL_AXES[axis].letter();
             run.words.take(letter);
@@ -356,7 +356,7 @@ impl Control<'_> {
                 continue;
             }
             self.position.change(|offsets| {
-                if rs274 {
+                if as_g92 {
                     offsets.set_g92(axis, value);
                 } else {
                     offsets.local[axis] = value;

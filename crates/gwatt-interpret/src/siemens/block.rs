@@ -7,9 +7,10 @@ use crate::code::{GCode, Motion};
 use crate::control::{Control, Run};
 use crate::jump::{Siemens as Go, Transfer};
 use crate::macro_block::not_finite;
+use crate::own_state::OwnState;
 use crate::report::Report;
 use gwatt_machine::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
-use gwatt_machine::{AxisKind, Family, PathMode};
+use gwatt_machine::{AxisKind, PathMode};
 use gwatt_motion::{ActionKind, FeedMode, Step};
 use gwatt_syntax::Block;
 
@@ -21,7 +22,7 @@ impl Control<'_> {
     /// not go on at the next line.
     #[cold]
     pub(crate) fn siemens_words(&mut self, block: &mut Block, report: &mut Report<'_, '_>) -> bool {
-        let Some(mut state) = self.siemens.take() else {
+        let Some(mut state) = self.own.take_siemens() else {
             return false;
         };
         let text = report.text.get(..block.text_end as usize);
@@ -55,14 +56,14 @@ impl Control<'_> {
             }
         }
         self.ended |= state.is_uncalled();
-        self.siemens = Some(state);
+        self.own = OwnState::Siemens(state);
         self.settle_siemens();
         transfers
     }
 
     /// The value of an expression.
     pub(crate) fn siemens_value(&mut self, text: &[u8]) -> Option<f64> {
-        let mut state = self.siemens.take()?;
+        let mut state = self.own.take_siemens()?;
         let mut reading = Reading {
             control: self,
             state: &mut state,
@@ -71,14 +72,14 @@ impl Control<'_> {
         };
         let value = reading.number().ok();
         let value = value.filter(|_| reading.cursor.peek().is_none());
-        self.siemens = Some(state);
+        self.own = OwnState::Siemens(state);
         value
     }
 
     /// Plain words get the offsets of the frame; where more is in force, each
     /// block takes the long way.
     pub(crate) fn settle_siemens(&mut self) {
-        let Some(state) = &mut self.siemens else {
+        let OwnState::Siemens(state) = &mut self.own else {
             return;
         };
         let shift = state.plain_shift();
@@ -99,9 +100,9 @@ impl Control<'_> {
     /// Executes a block that is more than plain motion.
     #[cold]
     pub(crate) fn siemens_block(&mut self, run: &mut Run<'_, '_>) {
-        if let Some(mut state) = self.siemens.take() {
+        if let Some(mut state) = self.own.take_siemens() {
             self.siemens_order(&mut state, run);
-            self.siemens = Some(state);
+            self.own = OwnState::Siemens(state);
         }
         self.settle_siemens();
     }
@@ -386,11 +387,6 @@ impl Control<'_> {
             .and_then(Option::as_ref)
             .is_some_and(|data| data.kind == AxisKind::Rotary);
         if rotary { 1.0 } else { self.modal.mm_per_unit }
-    }
-
-    /// Whether the language is that of SINUMERIK.
-    pub(crate) fn is_siemens(&self) -> bool {
-        self.machine.controller.language.family == Family::Siemens
     }
 
     /// Whether lengths are in inches.

@@ -6,6 +6,7 @@
 //! point. Lines of plain words go the way of all languages; what is more is
 //! read here, word by word, and worked out on the way.
 
+pub(super) mod language;
 mod arc;
 mod axis_name;
 mod block;
@@ -35,8 +36,6 @@ mod thread;
 mod value;
 
 use std::collections::HashMap;
-
-pub(super) use codes::is_beyond_words;
 
 use self::frame::Frame;
 use self::value::{Argument, Scope, Val};

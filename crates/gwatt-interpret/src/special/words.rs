@@ -4,8 +4,9 @@ use super::{MOTION_GROUP, MOVES_OF_A_BLOCK, Turning};
 use crate::code::{GCode, Motion};
 use crate::control::{Control, Run};
 use crate::letters::bit;
+use crate::rules::CycleWords;
 use crate::turning::{BOX, FACE, THREAD, THREAD_BOX};
-use gwatt_machine::{AxisSet, AxisValues, Family};
+use gwatt_machine::{AxisSet, AxisValues};
 use gwatt_motion::{ActionKind, MoveKind};
 use gwatt_syntax::source::Span;
 
@@ -41,7 +42,7 @@ impl Control<'_> {
         self.special.active = 0;
         let language = &self.machine.controller.language;
         let lathe = language.dialect.lathe.is_some();
-        if language.family != Family::Iso || !(language.mill_cycles || lathe) {
+        if self.rules.cycles != CycleWords::Fanuc || !(language.mill_cycles || lathe) {
             return Some(Motion::None);
         }
         // On a Fanuc, G80 is of another group than G0 to G3, which come back.
@@ -50,9 +51,9 @@ impl Control<'_> {
 
     /// G98 and G99.
     pub(crate) fn retract_level(&mut self, initial: bool, span: Span, run: &mut Run<'_, '_>) {
-        let iso = self.machine.controller.language.family == Family::Iso;
+        let fanuc = self.rules.cycles == CycleWords::Fanuc;
         let in_cycle = matches!(self.modal.motion, Motion::Special(_));
-        if iso && !initial && !in_cycle {
+        if fanuc && !initial && !in_cycle {
             run.report
                 .error(
                     "unsupported-code",
@@ -67,14 +68,14 @@ impl Control<'_> {
 
     /// A block under a special motion word (number × 10).
     pub(crate) fn special_motion(&mut self, number: u16, run: &mut Run<'_, '_>) {
-        let iso = self.machine.controller.language.family == Family::Iso;
+        let fanuc = self.rules.cycles == CycleWords::Fanuc;
         let moves = match number {
             52 | 53 => run.facts.motion_word.is_some() || run.words.has_axes(),
-            _ if iso => run.words.has_axes() || run.words.unused & bit(b'R') != 0,
+            _ if fanuc => run.words.has_axes() || run.words.unused & bit(b'R') != 0,
             _ => run.words.has_axes(),
         };
         if !moves {
-            if run.facts.motion_word.is_some() && !iso {
+            if run.facts.motion_word.is_some() && !fanuc {
                 let span = run.whole();
                 run.report
                     .error("no-axes", "this motion word needs an axis word", span)
@@ -110,8 +111,8 @@ impl Control<'_> {
             830..=890 if self.dialect().lathe.is_some() => self.turning_motion(number, run),
             THREAD | BOX | THREAD_BOX | FACE => self.turning_motion(number, run),
             380..=389 => self.probe(number, run),
-            760 if !iso => self.thread_cycle(run),
-            _ if iso => self.iso_cycle(number, run),
+            760 if !fanuc => self.thread_cycle(run),
+            _ if fanuc => self.iso_cycle(number, run),
             _ => self.rs274_cycle(number, run),
         }
         if run.steps.len() > before + MOVES_OF_A_BLOCK {

@@ -1,7 +1,6 @@
 //! What is announced of the spindle after each block.
 
 use crate::control::{Control, Run};
-use gwatt_machine::Family;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_motion::ActionKind;
 
@@ -54,9 +53,8 @@ impl Control<'_> {
     /// The tool that cuts: on a lathe T turns the turret at once, and its last
     /// two digits are an offset.
     fn tool_in_use(&self) -> f64 {
-        let language = &self.machine.controller.language;
         let selected = self.tools.selected;
-        let number = if language.dialect.lathe.is_some() && language.family == Family::Iso {
+        let number = if self.dialect().lathe.is_some() {
             if selected >= 100 {
                 selected / 100
             } else {

@@ -3,8 +3,9 @@
 use super::{MM_PER_FOOT, MM_PER_M};
 use crate::code::GCode;
 use crate::control::{Control, Run};
+use crate::rules::SpindleClamp;
+use gwatt_machine::AxisValues;
 use gwatt_machine::units::MM_PER_INCH;
-use gwatt_machine::{AxisValues, Family};
 use gwatt_motion::Arc;
 use std::f64::consts::TAU;
 
@@ -12,27 +13,27 @@ impl Control<'_> {
     /// G96, G97 and the clamp; before S is read.
     pub(crate) fn spindle_mode(&mut self, run: &mut Run<'_, '_>) {
         let lathe = self.dialect().lathe.is_some();
-        let rs274 = self.machine.controller.language.family == Family::Rs274;
+        let by_d = self.rules.clamp == SpindleClamp::D;
         for index in 0..run.words.g.len() {
             let (code, number, span) = run.words.g[index];
             match code {
                 // G50 S and G92 S without axes: no offset, but a clamp.
                 GCode::SetOffset | GCode::Scaling(false)
-                    if !rs274 && run.words.has(b'S') && (lathe || !run.words.has_axes()) =>
+                    if !by_d && run.words.has(b'S') && (lathe || !run.words.has_axes()) =>
                 {
                     if let Some(limit) = run.words.take(b'S') {
                         self.spindle.limit_rpm = limit.abs();
                     }
                 }
                 GCode::SurfaceSpeed if number == 970 => {
-                    if !rs274 && !run.words.has(b'S') {
+                    if !by_d && !run.words.has(b'S') {
                         // The speed stays what it is.
                         self.modal.spindle_rpm = self.highest_rpm(&self.position.at, None);
                     }
                     self.spindle.surface_mm_min = None;
                 }
                 GCode::SurfaceSpeed => {
-                    if rs274 {
+                    if by_d {
                         let clamp = run.words.take(b'D').map(f64::abs);
                         self.spindle.limit_rpm = clamp.unwrap_or(f64::INFINITY);
                     } else {
@@ -44,7 +45,7 @@ impl Control<'_> {
                                 .help("take P out");
                         }
                     }
-                    if rs274 && !run.words.has(b'S') {
+                    if by_d && !run.words.has(b'S') {
                         run.report
                             .error("surface-speed", "G96 without its speed", span)
                             .help("write the surface speed as S");

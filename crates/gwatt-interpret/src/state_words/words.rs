@@ -4,7 +4,6 @@ use super::{Saved, Switches};
 use crate::control::{Control, Run};
 use crate::modal::{Feed, NumberText};
 use crate::tool_table::Tool;
-use gwatt_machine::Family;
 use gwatt_motion::ActionKind;
 use gwatt_syntax::source::Span;
 
@@ -43,12 +42,7 @@ impl Control<'_> {
 
     /// Whether this control has the M word (number × 10), and it is of this file.
     pub(crate) fn is_state_word(&self, number: u16) -> bool {
-        let tens = number.is_multiple_of(10);
-        match self.machine.controller.language.family {
-            Family::Rs274 => tens && matches!(number, 190 | 480..=530 | 610..=680 | 700..=730),
-            Family::Iso | Family::Isg => number == 190,
-            Family::Marlin | Family::Siemens | Family::Nci => false,
-        }
+        (self.rules.is_state_word)(number)
     }
 
     fn override_word(&mut self, number: u16, span: Span, run: &mut Run<'_, '_>) {

@@ -4,7 +4,7 @@ use super::trace::{For, Target};
 use super::{ASSIGNMENTS_MAX, Statement, Unread, program_name};
 use crate::control::Control;
 use crate::expression::{Fault, Reader, Variables};
-use gwatt_machine::Family;
+use crate::rules::Macros;
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, IssueKind, Word};
 
@@ -55,8 +55,8 @@ impl Control<'_> {
         block: &mut Block,
         record: bool,
     ) -> Result<Statement<'t>, Unread> {
-        let family = self.machine.controller.language.family;
-        if !matches!(family, Family::Rs274 | Family::Iso) {
+        let macros = self.rules.macros;
+        if macros == Macros::Own {
             return Err(Unread::Foreign);
         }
         let hopeless = |kind| matches!(kind, IssueKind::UnclosedComment | IssueKind::NotFinite);
@@ -90,21 +90,21 @@ impl Control<'_> {
                     }
                     statement.assignments.push((name, held, span));
                 }
-                b'<' if family == Family::Iso => {
+                b'<' if macros == Macros::MacroB => {
                     let name = reader.angle_name()?.into_owned();
                     program_name(name, start, &reader, &mut statement, block);
                 }
-                b':' | b'O' if family == Family::Iso => {
+                b':' | b'O' if macros == Macros::MacroB => {
                     self.program_word(&mut reader, &mut statement, block)?;
                 }
-                b',' if family == Family::Iso => {
+                b',' if macros == Macros::MacroB => {
                     corner_word(self, &mut reader, &mut statement)?;
                 }
-                b'O' if family == Family::Rs274 => {
+                b'O' if macros == Macros::OWords => {
                     self.o_word(&mut reader, &mut statement, block)?;
                 }
                 b'A'..=b'Z'
-                    if family == Family::Iso && self.keyword(&mut reader, &mut statement)? => {}
+                    if macros == Macros::MacroB && self.keyword(&mut reader, &mut statement)? => {}
                 b'A'..=b'Z' | b'@' | b'^' => {
                     self.word(byte, &mut reader, &mut statement, block)?;
                 }

@@ -1,6 +1,7 @@
 //! Blocks that are more than plain words: values that are worked out,
 //! assignments, and flow.
 
+pub(super) mod language;
 mod macro_b;
 pub(super) mod keyword;
 mod o_word;

@@ -2,8 +2,9 @@
 
 use super::{LENGTH_AXIS, OFFSETS_OF_T, ToolLength};
 use crate::control::{Control, Run};
+use crate::rules::ToolLengths;
 use crate::tool_table::Tool;
-use gwatt_machine::{ALL_AXES, AXES, AxisValues, Family};
+use gwatt_machine::{ALL_AXES, AXES, AxisValues};
 use gwatt_syntax::source::Span;
 
 impl Control<'_> {
@@ -11,7 +12,7 @@ impl Control<'_> {
     /// others also have numbers of offsets and magazines in it).
     pub(crate) fn select_tool(&mut self, number: f64, run: &mut Run<'_, '_>) {
         let span = run.words.span(b'T', run.block);
-        if self.machine.controller.language.family == Family::Rs274 {
+        if self.rules.tools_are_listed {
             let Some(number) = tool_number(number, span, run) else {
                 return;
             };
@@ -22,7 +23,7 @@ impl Control<'_> {
             self.tools.select(number);
         } else if number >= 0.0 && number <= f64::from(u32::MAX) {
             self.tools.select(number as u32);
-            if self.dialect().lathe.is_some() && self.osp.is_none() {
+            if self.rules.t_selects_offset && self.dialect().lathe.is_some() {
                 self.offset_of_lathe(run);
             }
         }
@@ -79,9 +80,8 @@ impl Control<'_> {
 
     /// G43 and similar words: the axes stay, the program coordinates change.
     pub(crate) fn tool_length(&mut self, form: ToolLength, span: Span, run: &mut Run<'_, '_>) {
-        let family = self.machine.controller.language.family;
-        let rs274 = family == Family::Rs274;
-        if !rs274 && family != Family::Iso {
+        let lengths = self.rules.tool_lengths;
+        if lengths == ToolLengths::Elsewhere {
             // These have their lengths elsewhere than in H.
             run.words.take(b'H');
             let message = "the tool length is taken as 0";
@@ -92,7 +92,9 @@ impl Control<'_> {
         let offset = match form {
             ToolLength::Off => Some([0.0; AXES]),
             ToolLength::Given => self.given_length(span, run),
-            ToolLength::On | ToolLength::Reversed | ToolLength::Added if rs274 => {
+            ToolLength::On | ToolLength::Reversed | ToolLength::Added
+                if lengths == ToolLengths::Table =>
+            {
                 self.length_of_h(form, span, run)
             }
             ToolLength::On | ToolLength::Reversed | ToolLength::Added => {
@@ -115,7 +117,7 @@ impl Control<'_> {
 
     /// H in a block of its own while G43 is in force (Fanuc).
     pub(crate) fn tool_length_again(&mut self, run: &mut Run<'_, '_>) {
-        if self.machine.controller.language.family != Family::Iso {
+        if self.rules.tool_lengths != ToolLengths::Offsets {
             return;
         }
         let Some((form, _)) = self.tools.length else {

@@ -138,7 +138,7 @@ impl Control<'_> {
         } else {
             MoveKind::Feed
         };
-        if !self.is_siemens() {
+        if !self.rules.chamfer_has_next_feed {
             // Which of the two feeds holds there is not documented: the faster.
             middle.feed_mm_s = middle.feed_mm_s.max(first.feed_mm_s);
         }

@@ -4,7 +4,6 @@ use crate::code::GCode;
 use crate::compensation::words::Nose;
 use crate::control::{Control, Run};
 use crate::tools::OFFSETS_OF_T;
-use gwatt_machine::Family;
 use gwatt_syntax::source::Span;
 
 impl Control<'_> {
@@ -15,18 +14,19 @@ impl Control<'_> {
         run: &mut Run<'_, '_>,
         span: Span,
     ) -> Option<Nose> {
-        let number = match self.machine.controller.language.family {
-            Family::Siemens => return self.nose_of_edge(run, span),
-            _ if self.dialect().lathe.is_some() => {
-                run.words.take(b'D');
-                let tool = self.tools.selected;
-                if tool < OFFSETS_OF_T {
-                    tool
-                } else {
-                    tool % OFFSETS_OF_T
-                }
+        if self.rules.tool_edges {
+            return self.nose_of_edge(run, span);
+        }
+        let number = if self.dialect().lathe.is_some() {
+            run.words.take(b'D');
+            let tool = self.tools.selected;
+            if tool < OFFSETS_OF_T {
+                tool
+            } else {
+                tool % OFFSETS_OF_T
             }
-            _ => self.offset_number(run)?,
+        } else {
+            self.offset_number(run)?
         };
         if number == 0 {
             return Some(Nose::POINT);

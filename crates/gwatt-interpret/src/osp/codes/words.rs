@@ -4,6 +4,7 @@ use crate::control::{Control, Run};
 use crate::offsets::{FURTHER, FURTHER_MAX};
 use crate::osp::Return;
 use crate::osp::code::OspCode;
+use crate::own_state::OwnState;
 use gwatt_syntax::source::Span;
 
 impl Control<'_> {
@@ -20,7 +21,7 @@ impl Control<'_> {
                     return;
                 };
                 let unit = self.modal.mm_per_unit;
-                if let Some(osp) = &mut self.osp {
+                if let OwnState::Osp(osp) = &mut self.own {
                     osp.return_mm = Some(value * unit);
                 }
             }
@@ -54,7 +55,7 @@ impl Control<'_> {
 
     /// M52, M53 and M54 (number × 10).
     pub(crate) fn osp_return(&mut self, number: u16) {
-        if let Some(osp) = &mut self.osp {
+        if let OwnState::Osp(osp) = &mut self.own {
             osp.returns = match number {
                 520 => Some(Return::Limit),
                 530 => Some(Return::Level),
@@ -66,7 +67,9 @@ impl Control<'_> {
 
     /// The level that a canned cycle returns to, machine coordinates.
     pub(crate) fn osp_clear(&self, r_mm: f64, run: &mut Run<'_, '_>) -> Option<f64> {
-        let osp = self.osp.as_ref()?;
+        let OwnState::Osp(osp) = &self.own else {
+            return None;
+        };
         let normal = self.modal.plane[2];
         let (message, help) = match (osp.returns, osp.return_mm) {
             (Some(Return::Point), _) => return Some(r_mm),

@@ -1,0 +1,34 @@
+//! Firmware of printers as one of the languages.
+
+use super::is_command;
+use crate::control::{Control, Language, Run};
+use crate::report::Report;
+use gwatt_syntax::Block;
+
+/// Marlin and similar firmware.
+#[derive(Debug)]
+pub(crate) struct PrinterLanguage;
+
+impl Language for PrinterLanguage {
+    fn is_command(&self, block: &Block) -> bool {
+        is_command(block)
+    }
+
+    /// What is not understood is a command: see [`Self::is_command`].
+    fn read(
+        &self,
+        control: &mut Control<'_>,
+        block: &mut Block,
+        report: &mut Report<'_, '_>,
+    ) -> bool {
+        control.macro_words(block, report)
+    }
+
+    fn execute(&self, control: &mut Control<'_>, run: &mut Run<'_, '_>, errors: u64) {
+        if run.report.diagnostics.errors == errors && !run.words.is_alone() {
+            control.command_line(run);
+        } else {
+            control.general(run, errors);
+        }
+    }
+}
