@@ -7,7 +7,7 @@ use crate::interpret::{
     Facts, FastPathState, FeedMode, KnobState, Motion, Move, MoveKind, Step, TOOL_CHANGE_UNKNOWN,
 };
 use crate::limit::{Change, Outcome, Permit, Waiting};
-use crate::machine::{AxisId, Family, Lathe, Machine, PathMode, RapidJoint, RapidPath};
+use crate::machine::{AxisId, Lathe, Machine, PathMode, RapidJoint, RapidPath};
 use crate::motion::{CYCLE, TURNING_CYCLE};
 use crate::power::Assessment;
 use crate::rewrite::{Comment, Mark, has_at_most};
@@ -229,10 +229,10 @@ impl Entry {
                 PER_REVOLUTION,
             ),
         ];
+        let family = machine.controller.language.family.facts();
         let rapid = [
             (
-                // RS274/NGC: G53 goes with G0 and G1.
-                facts.machine_coordinates && machine.controller.language.family != Family::Rs274,
+                facts.machine_coordinates && !family.feeds_in_machine_coordinates,
                 MACHINE_COORDINATES,
             ),
             (facts.reference, REFERENCE),
@@ -300,7 +300,7 @@ impl Entry {
                 "--with-subprograms writes the files of subprograms too, certified together with \
                  all programs that are given"
             }
-            UNKNOWN_FEED if language.family == Family::Siemens => {
+            UNKNOWN_FEED if !language.family.facts().power_on_feed_data.is_empty() => {
                 "write F before it; or give the F of power-on, which no written one exceeds \
                  (setting data 42110): power_on_feed_mm_min under [language] of the machine file"
             }
@@ -370,7 +370,7 @@ impl Entry {
             && !words.any(|word| word.letter == b'G' && (61.0..=64.0).contains(&word.value))
             && (language.exact_stop_word.is_some()
                 || language.stops_by_mode()
-                || language.family == Family::Rs274
+                || language.family.facts().stops_by_exact_path
                     && language.g61_1 == PathMode::ExactStop
                     && self.one_corner
                     && self.mark.blend_words().is_some())
@@ -464,10 +464,12 @@ pub(super) fn positions(machine: &Machine, motion: Motion, mv: &Move) -> bool {
 /// Whether the mode of the feed is a matter of its own: with others it also switches
 /// constant surface speed off.
 pub(super) fn turns_apart(machine: &Machine) -> bool {
-    matches!(
-        machine.controller.language.family,
-        Family::Rs274 | Family::Iso
-    )
+    machine
+        .controller
+        .language
+        .family
+        .facts()
+        .feed_mode_is_apart
 }
 
 /// The knobs in force, where the controller has any.

@@ -17,7 +17,7 @@ use super::turned::{InForce, Turned};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Facts, KnobState, Motion, ToolWords};
 use crate::limit::Change;
-use crate::machine::{Family, Lathe, Machine, ToolChange};
+use crate::machine::{Lathe, Machine, ToolChange};
 use crate::source::split_line_end;
 use crate::syntax::{Block, Word};
 
@@ -375,9 +375,8 @@ impl<'m> Rewriter<'m> {
         }
         let feed = original.feed_value();
         if self.written.feed != feed && original.per_minute {
-            // A printer reads no line without a command.
-            let printer = self.machine.controller.language.family == Family::Marlin;
-            if words.is_empty() && printer && feed.is_some() {
+            let family = self.machine.controller.language.family.facts();
+            if words.is_empty() && family.lines_need_command && feed.is_some() {
                 // An arc it reads only with its centre: a line takes its place.
                 let arc = !matches!(original.motion, Motion::Rapid | Motion::Linear);
                 let motion = if arc { Motion::Linear } else { original.motion };

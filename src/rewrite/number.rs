@@ -1,7 +1,7 @@
 //! Numbers and words in the style of the block around them.
 
 use crate::interpret::Feed;
-use crate::machine::Family;
+use crate::machine::{Family, LowerOf};
 use crate::source::Span;
 use crate::syntax::Block;
 
@@ -9,9 +9,7 @@ use crate::syntax::Block;
 const DECIMALS: f64 = 1e6;
 const FINE_DECIMALS: f64 = 1e10;
 
-/// How deep a Fanuc control lets brackets be nested (B-64484EN, custom macro), and by how
-/// much [`at_most`] nests them deeper.
-const ISO_DEPTH_MAX: usize = 5;
+/// By how much [`at_most`] nests brackets deeper.
 const DEPTH: usize = 3;
 
 /// How a block is written.
@@ -68,15 +66,14 @@ pub(super) fn decimal(value: f64, point: bool) -> String {
 pub(super) fn at_most(family: Family, expression: &[u8], most: f64) -> Option<String> {
     let expression = std::str::from_utf8(expression).ok()?.trim();
     let most = decimal(most, true);
-    match family {
-        Family::Iso if depth(expression) + DEPTH > ISO_DEPTH_MAX => None,
+    match family.facts().lower_of {
+        LowerOf::Brackets(deepest) if depth(expression) + DEPTH > deepest => None,
         // The lower of a and b is (a + b - |a - b|) / 2.
-        Family::Rs274 | Family::Iso => Some(format!(
+        LowerOf::Brackets(_) => Some(format!(
             "[[{expression}+{most}-ABS[{expression}-{most}]]/2]"
         )),
-        Family::Isg => Some(format!("MIN[{expression},{most}]")),
-        Family::Siemens => Some(format!("MINVAL({expression},{most})")),
-        _ => None,
+        LowerOf::Function { open, close } => Some(format!("{open}{expression},{most}{close}")),
+        LowerOf::None => None,
     }
 }
 

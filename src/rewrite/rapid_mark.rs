@@ -1,7 +1,7 @@
 //! The comment that says of a feed that it stands for a rapid: written where `limit` turns a
 //! rapid into a feed, and known again when the written program is limited once more.
 
-use crate::machine::{Family, Language};
+use crate::machine::Language;
 use crate::source::split_line_end;
 
 /// Most characters of a mark: lines of programs are short.
@@ -66,10 +66,7 @@ impl RapidMark {
     /// The comment as a language has it.
     #[must_use]
     pub fn comment(&self, language: &Language) -> Comment {
-        let to_line_end = match language.family {
-            Family::Siemens | Family::Marlin => true,
-            Family::Iso | Family::Rs274 | Family::Isg | Family::Nci => false,
-        };
+        let to_line_end = language.family.facts().comment_to_line_end;
         let text = if to_line_end {
             format!("; {}", self.0)
         } else {

@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use super::number::{decimal, rounded, rounded_finely, with_blanks};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Action, ActionKind, Corner, FeedMode, Modal, Motion, Move, MoveKind, Step};
-use crate::machine::{ALL_AXES, AXES, AxisValues, Family, Language, Lathe, Machine};
+use crate::machine::{ALL_AXES, AXES, AxisValues, Language, Lathe, Machine};
 use crate::source::{Span, split_line_end};
 use crate::syntax::{Block, Word};
 use crate::units::SECONDS_PER_MINUTE;
@@ -87,10 +87,10 @@ impl<'m> Singles<'m> {
         }
     }
 
-    /// Whether the language is that of Fanuc and its relatives.
+    /// Whether the motion word before a canned cycle is in force again after it, as on a Fanuc.
     #[must_use]
-    pub fn is_iso(&self) -> bool {
-        self.language.family == Family::Iso
+    pub fn motion_survives_cycles(&self) -> bool {
+        self.language.family.facts().motion_survives_cycles
     }
 
     /// The lines that do what a block of a canned cycle does; `place` gives a place of the
@@ -156,8 +156,8 @@ impl<'m> Singles<'m> {
         let after = match of.modal.motion {
             // The next block that moves has a motion word of the same group.
             Motion::Special(_) if lathe => return Ok(()),
-            // On a Fanuc the end of the cycle puts no motion word of another group back.
-            Motion::Special(_) if self.language.family == Family::Iso => of.motion_before,
+            // The end of the cycle puts no motion word of another group back.
+            Motion::Special(_) if self.motion_survives_cycles() => of.motion_before,
             Motion::Special(_) => return Ok(()),
             other => other,
         };
@@ -167,18 +167,22 @@ impl<'m> Singles<'m> {
         match after {
             Motion::Rapid => lines.push("G0"),
             Motion::Linear => lines.push("G1"),
-            Motion::None if self.language.family == Family::Rs274 => lines.push("G80"),
+            Motion::None if self.language.family.facts().g80_stays => lines.push("G80"),
             Motion::None => {}
             _ => return Err("an arc's motion word is in force again after it"),
         }
         Ok(())
     }
 
+    /// Whether G99 is the level of cycles; on lathes it is the feed per revolution.
+    fn level_by_g99(&self) -> bool {
+        self.language.family.facts().level_by_g99 && self.language.dialect.lathe.is_none()
+    }
+
     /// Whether a block returns to R only because an earlier block says so.
     pub(super) fn lacks_level(&self, of: &CycleBlock<'_>, returns_to_r: bool) -> bool {
         let says = |word: &Word| word.letter == b'G' && [98.0, 99.0].contains(&word.value);
-        let iso = self.language.family == Family::Iso && self.language.dialect.lathe.is_none();
-        iso && returns_to_r && !of.block.words.iter().any(says)
+        self.level_by_g99() && returns_to_r && !of.block.words.iter().any(says)
     }
 
     /// The block with the word for the level to which it returns, where that is R and only
@@ -201,11 +205,10 @@ impl<'m> Singles<'m> {
     ) -> Result<(), &'static str> {
         let (text, _) = split_line_end(of.text);
         let mut edits: Vec<Edit> = Vec::new();
-        // On lathes it is the feed per revolution.
-        let iso = self.language.family == Family::Iso && self.language.dialect.lathe.is_none();
+        let by_g99 = self.level_by_g99();
         for word in &of.block.words {
             // G99 stands in the block of a cycle alone.
-            let returns = iso && word.letter == b'G' && word.value == 99.0;
+            let returns = by_g99 && word.letter == b'G' && word.value == 99.0;
             let own = CYCLE_LETTERS.contains(&word.letter)
                 || returns
                 || of.cycle_word.is_some_and(|cycle| cycle == word.span);
@@ -333,7 +336,7 @@ impl<'m> Singles<'m> {
         }
         let (letter, unit_s) = self.language.dwell.first()?;
         let value = rounded(dwell_s / unit_s);
-        let point = self.language.family == Family::Iso;
+        let point = self.language.family.facts().dwell_with_point;
         near(value, *unit_s).then(|| format!("G4 {}{}", char::from(*letter), decimal(value, point)))
     }
 }

@@ -5,6 +5,7 @@ use super::knob::Knob;
 use super::look_ahead::LookAhead;
 use super::printer::Printer;
 use super::queue::Queue;
+use crate::family::Family;
 
 /// A controller profile.
 #[derive(Debug, Clone, PartialEq)]
@@ -147,7 +148,7 @@ impl Language {
     /// for one block.
     #[must_use]
     pub fn stops_by_mode(&self) -> bool {
-        self.family == Family::Iso
+        self.family.facts().stops_by_mode
             && self.exact_stop_word.is_none()
             && self.g61 == PathMode::ExactStop
             && self.g64 == PathMode::LookAhead
@@ -255,23 +256,6 @@ pub enum CompensationLead {
     Perpendicular,
     /// As Perpendicular, but round outside corners like any other (Fanuc's type B).
     Corner,
-}
-
-/// The family of words.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Family {
-    /// ISO 6983 as most machine tools read it.
-    Iso,
-    /// RS274/NGC as `LinuxCNC` reads it.
-    Rs274,
-    /// Marlin and similar firmware: 3D printers.
-    Marlin,
-    /// ISG kernel, Beckhoff `TwinCAT` CNC.
-    Isg,
-    /// Siemens SINUMERIK 840D and its relatives.
-    Siemens,
-    /// Beckhoff `TwinCAT` NC I, classic dialect.
-    Nci,
 }
 
 /// What happens at the joint of two blocks.

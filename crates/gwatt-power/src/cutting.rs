@@ -4,7 +4,7 @@
 //! Output: a power at any feed, or a force at the speed of the feed: with the
 //! specific cutting force `kc`, width `ae` and depth `ap`, `P = kc·ae·ap·vf`.
 
-use gwatt_machine::{Cutting, CuttingTool, Family, Machine};
+use gwatt_machine::{Cutting, CuttingTool, Machine};
 use gwatt_motion::MoveKind;
 
 /// What a tool takes: power at any feed in W, and force in N.
@@ -33,7 +33,7 @@ impl CuttingPower {
         let mut cutting = Self {
             tools: machine.tools.clone(),
             other_w,
-            by_select: language.family == Family::Siemens || language.dialect.osp,
+            by_select: language.family.facts().selected_tool_cuts || language.dialect.osp,
             loaded: 0.0,
             now: Taken::default(),
         };

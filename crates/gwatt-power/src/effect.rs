@@ -3,7 +3,7 @@
 //! Input: the controller's profile and actions in program order. Output: for
 //! each, whether the motion stops there.
 
-use gwatt_machine::{Controller, Family, MESSAGE, QueueEffect};
+use gwatt_machine::{Controller, MESSAGE, QueueEffect};
 use gwatt_motion::{Action, ActionKind};
 
 /// What an action does to the motion.
@@ -73,7 +73,7 @@ impl Switched {
             ActionKind::Message => action.value as u16,
             _ => number,
         };
-        let printer = controller.language.family == Family::Marlin;
+        let printer = controller.language.family.facts().printer;
         let changes = self.switch(action, number);
         match controller.queue.effect(letter, number) {
             Some(QueueEffect::Stop) => Effect::Stop,

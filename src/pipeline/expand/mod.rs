@@ -21,7 +21,7 @@ pub(super) use trace::{OriginalRows, Traced, WRITTEN_OUT};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::{Interpreter, Step};
 use crate::limit::{NO_KNOB, UNTOUCHABLE};
-use crate::machine::{Family, Machine};
+use crate::machine::Machine;
 use crate::rewrite::{CycleBlock, Singles};
 use crate::source::{Span, lines, split_line_end};
 use crate::syntax::{Block, Word};
@@ -216,10 +216,7 @@ impl Notes {
 fn survey(program: &[u8], machine: &Machine, paths: &[Options]) -> Result<Vec<Series>, Failure> {
     let language = &machine.controller.language;
     let mut all: Vec<Series> = Vec::new();
-    if matches!(
-        language.family,
-        Family::Rs274 | Family::Iso | Family::Siemens
-    ) {
+    if language.family.facts().writes_out_cycles {
         for options in paths {
             survey_path(program, machine, options, &mut all)?;
         }
@@ -331,7 +328,7 @@ fn survey_path(
             motion_before: interpreter.motion_before_cycle(),
         };
         rigid |= line.block.words.iter().any(is_rigid);
-        let taps = TAPS.contains(&interpreter.cycle()) && singles.is_iso();
+        let taps = TAPS.contains(&interpreter.cycle()) && singles.motion_survives_cycles();
         let fixed = fixed.or((rigid && taps).then_some(RIGID));
         let turned = || turning::stays(&line, interpreter.cycle()).filter(|_| lathe);
         let fixed = fixed.or_else(turned);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::{Lines, Series};
 use crate::interpret::{Modal, Motion, Step};
-use crate::machine::{AxisKind, AxisSet, Family, Lathe, Machine};
+use crate::machine::{AxisKind, AxisSet, Lathe, Machine};
 use crate::pipeline::executor::Line;
 use crate::rewrite::Return;
 use crate::syntax::Block;
@@ -64,7 +64,7 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before, machine: &Machine) ->
             increments: language.dialect.lathe == Some(Lathe::A),
             tool_change: language.tool_change,
         };
-        if language.family == Family::Siemens {
+        if language.family.facts().returns_in_machine_coordinates {
             write_in_machine(&block, moving, machine)
         } else {
             block.write(|place| line.interpreter.place_in_program(place))
@@ -93,7 +93,13 @@ fn is_known(moving: AxisSet, block: &Block, machine: &Machine) -> bool {
         let data = machine.axes[axis].as_ref();
         data.is_some_and(|data| data.reference_mm.is_some())
     };
-    machine.controller.language.family == Family::Rs274 || first && moving.iter().all(known)
+    let kept = machine
+        .controller
+        .language
+        .family
+        .facts()
+        .reference_in_parameters;
+    kept || first && moving.iter().all(known)
 }
 
 /// The way to the reference point of SINUMERIK.

@@ -111,8 +111,8 @@ impl<'m> Trial<'m> {
     ) -> Option<Vec<Outcome>> {
         let mut limiter = Limiter::new(self.machine, how, depths.clone());
         let want = whether_fits(self.machine, &PowerModel::new(self.machine));
-        let mut assessor = Assessor::new(self.machine, options.certificate, want)
-            .starting(options.reading.start);
+        let mut assessor =
+            Assessor::new(self.machine, options.certificate, want).starting(options.reading.start);
         let mut outcomes: Vec<Outcome> = Vec::with_capacity(self.moves.len());
         let mut sink = |mv: &Move, assessment: &Assessment, _: &[u8]| {
             if mv.kind == MoveKind::Spindle {

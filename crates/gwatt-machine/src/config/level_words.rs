@@ -5,7 +5,8 @@ use super::findings::Findings;
 use super::value::OneOrMany;
 use super::word;
 use crate::axis::AxisId;
-use crate::controller::{Controller, Family, Language};
+use crate::controller::{Controller, Language};
+use crate::family::{Family, LevelWords};
 use crate::levels::LevelWord;
 use crate::model::Load;
 
@@ -49,7 +50,7 @@ impl<'a> Taken<'a> {
         if self.is_documented(wanted) {
             return None;
         }
-        if !matches!(self.language.family, Family::Iso | Family::Siemens) {
+        if self.language.family.facts().level_words == LevelWords::Documented {
             return Some(format!(
                 "the controller `{}` is not known to have such a word",
                 self.controller
@@ -108,7 +109,7 @@ pub(crate) fn words(
 fn parse(text: &str, family: Family) -> Option<LevelWord> {
     let text = text.trim();
     let is_name = text.len() > 1 && text.bytes().all(|byte| byte.is_ascii_alphabetic());
-    if is_name && family == Family::Siemens {
+    if is_name && family.facts().level_words == LevelWords::CodesAndNames {
         let text = text.to_ascii_uppercase();
         return Some(LevelWord {
             text,

@@ -6,7 +6,7 @@ use super::findings::Findings;
 use super::machine_file::OwnLanguageTable;
 use super::value::At;
 use super::{printer, profile};
-use crate::controller::{Family, Language};
+use crate::controller::Language;
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Takes what the table gives into the language of the profile.
@@ -52,13 +52,13 @@ pub(crate) fn take(
         ("ignored_macros", &own.ignored_macros),
         ("unknown_moves", &own.unknown_moves),
     ] {
-        if list.is_some() && language.family != Family::Marlin {
+        if list.is_some() && !language.family.facts().printer {
             let message = format!("`{field}` belongs to the controllers of printers");
             findings.error("machine-kind", &table.span, message, None);
         }
     }
     if let Some(retract) = &own.retract {
-        if language.family != Family::Marlin {
+        if !language.family.facts().printer {
             let message = "`retract` belongs to the controllers of printers";
             findings.error("machine-kind", &retract.span, message, None);
         }

@@ -15,9 +15,10 @@ use super::value::At;
 use super::word;
 use crate::axis::AxisId;
 use crate::controller::{
-    ArcRule, CompensationCorner, CompensationLead, Controller, CutterCompensation, Dialect, Family,
+    ArcRule, CompensationCorner, CompensationLead, Controller, CutterCompensation, Dialect,
     Language, Lathe, Planner, Point, RapidJoint, RapidKnob, RapidPath, SpindleWait, ToolChange,
 };
+use crate::family::Family;
 use crate::knob::{Knob, KnobArgument, KnobTarget, KnobUnit};
 use crate::queue::{MESSAGE, MESSAGES, Queue, QueueWord};
 use crate::units::SECONDS_PER_MINUTE;
@@ -105,7 +106,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         kept_variables: table
             .kept_variables
             .clone()
-            .unwrap_or_else(|| kept_variables(family)),
+            .unwrap_or_else(|| family.facts().kept_variables.into_iter().collect()),
         dialect: dialect(table),
     })
 }
@@ -120,16 +121,6 @@ fn exact_stop_word(findings: &mut Findings<'_>, table: &LanguageTable) -> Option
     let help = Some("such as \"G9\"".to_owned());
     findings.error("machine-word", &text.span, message, help);
     None
-}
-
-/// Fanuc (B-63944EN, "Variables"): #500 to #999 are kept. `LinuxCNC`: what the
-/// parameter file may hold besides its own.
-fn kept_variables(family: Family) -> Vec<[u32; 2]> {
-    match family {
-        Family::Iso => vec![[500, 999]],
-        Family::Rs274 => vec![[31, 5000]],
-        _ => Vec::new(),
-    }
 }
 
 /// How G41 and G42 shift the path.
