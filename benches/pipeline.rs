@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 
 use divan::counter::BytesCount;
 use divan::{Bencher, black_box};
-use gwatt::interpret::{Diagnostics, Facts, Interpreter, Move, Step};
+use gwatt::interpret::{Diagnostics, Effects, Facts, Interpreter, Move, Step};
 use gwatt::machine::{Machine, PathMode};
 use gwatt::pipeline::{Allowed, Law, LimitOptions, Options, Strategy, analyze, limit};
 use gwatt::plan::{Overrides, Plan, plan};
@@ -102,9 +102,7 @@ fn moves(machine: &Machine) -> Vec<Move> {
             number,
             text,
             &mut block,
-            &mut steps,
-            &mut facts,
-            &mut diagnostics,
+            Effects::new(&mut steps, &mut facts, &mut diagnostics),
         );
     }
     assert_eq!(diagnostics.errors, 0, "{:?}", diagnostics.list);
@@ -182,9 +180,7 @@ fn c_interpret(bencher: Bencher<'_, '_>) {
                 number,
                 text,
                 block,
-                &mut steps,
-                &mut facts,
-                &mut diagnostics,
+                Effects::new(&mut steps, &mut facts, &mut diagnostics),
             );
             black_box(&steps);
         }

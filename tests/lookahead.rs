@@ -17,7 +17,9 @@ mod words;
 mod steps;
 mod tandem;
 
-use gwatt::interpret::{ActionKind, Diagnostics, Facts, Interpreter, MoveKind, Reading, Step};
+use gwatt::interpret::{
+    ActionKind, Diagnostics, Effects, Facts, Interpreter, MoveKind, Reading, Step,
+};
 use gwatt::machine::{AXES, LookAhead, Machine, QueueEffect};
 use gwatt::plan::Overrides;
 use gwatt::plan::lookahead::{Element, Joint, PathPlanner, Planned};
@@ -148,9 +150,7 @@ pub(crate) fn plan_elements(
             number,
             text,
             &mut block,
-            &mut steps,
-            &mut facts,
-            &mut diagnostics,
+            Effects::new(&mut steps, &mut facts, &mut diagnostics),
         );
         let code = String::from_utf8_lossy(text);
         let code = code.split(['(', ';']).next().unwrap();

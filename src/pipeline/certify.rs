@@ -25,7 +25,9 @@ use super::totals::Totals;
 use super::watching::watching_at;
 use super::{Failure, Options, RowSink, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::interpret::{Diagnostics, Facts, FastPathState, Interpreter, Move, MoveKind, Step};
+use crate::interpret::{
+    Diagnostics, Effects, Facts, FastPathState, Interpreter, Move, MoveKind, Step,
+};
 use crate::limit::{Deeper, Depths, Paced, Place};
 use crate::machine::Machine;
 use crate::power::{Assessment, Assessor, Certificate, Lower, PowerModel, Rating, Want};
@@ -176,7 +178,7 @@ impl<'m, 'r> Certifier<'m, 'r> {
                 line,
                 ..
             } = self;
-            interpreter.execute(*line, text, block, steps, facts, diagnostics);
+            interpreter.execute(*line, text, block, Effects::new(steps, facts, diagnostics));
             for step in steps.iter_mut() {
                 let mut text = text;
                 if let Step::Move(mv) = step

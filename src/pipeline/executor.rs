@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use super::line_key::LineKey;
 use super::{Failure, Options};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::interpret::{Diagnostics, Facts, Flow, Interpreter, Move, Reading, Step};
+use crate::interpret::{Diagnostics, Effects, Facts, Flow, Interpreter, Move, Reading, Step};
 use crate::machine::Machine;
 use crate::source::{LineReader, SourceError};
 use crate::syntax::{Block, FOREIGN_BYTES, foreign, scan_line};
@@ -123,9 +123,7 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
             number,
             text,
             &mut self.block,
-            &mut self.steps,
-            &mut self.facts,
-            &mut self.diagnostics,
+            Effects::new(&mut self.steps, &mut self.facts, &mut self.diagnostics),
         );
         self.executed += u64::from(self.facts.executed);
         if self.facts.transfers {
@@ -203,9 +201,7 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
             number,
             text,
             &mut self.block,
-            &mut self.steps,
-            &mut self.facts,
-            &mut self.diagnostics,
+            Effects::new(&mut self.steps, &mut self.facts, &mut self.diagnostics),
         );
         for found in self.diagnostics.list.iter_mut().skip(said) {
             found.file = flow.file().map(str::to_owned);
@@ -227,7 +223,8 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
             ..
         } = self;
         let flow = flow.as_mut()?;
-        *stuck |= !flow.conclude(run, interpreter, block, steps, facts, diagnostics);
+        let effects = Effects::new(steps, facts, diagnostics);
+        *stuck |= !flow.conclude(run, interpreter, block, effects);
         let place = flow.now();
         Some(Line {
             key: (flow.number(place), place.line as u64 + 1),

@@ -262,7 +262,7 @@ pub(super) fn different(original: &ExpectedMove, mv: &Move) -> Option<&'static s
 mod tests {
     use super::Asked;
     use crate::diagnostic::Severity;
-    use crate::interpret::{Diagnostics, Facts, Interpreter, Move, Reading, Step};
+    use crate::interpret::{Diagnostics, Effects, Facts, Interpreter, Move, Reading, Step};
     use crate::machine::Machine;
     use crate::source::lines;
     use crate::syntax::{Block, scan_line};
@@ -283,9 +283,7 @@ mod tests {
                 number,
                 text,
                 &mut block,
-                &mut steps,
-                &mut facts,
-                &mut diagnostics,
+                Effects::new(&mut steps, &mut facts, &mut diagnostics),
             );
         }
         let mut found = diagnostics.list.iter();

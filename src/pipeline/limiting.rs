@@ -62,6 +62,15 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
     Ok(summary)
 }
 
+/// What is asked of a program.
+#[derive(Clone, Copy)]
+struct Asked<'a> {
+    machine: &'a Machine,
+    /// How it is read, on each path through it.
+    paths: &'a [Options],
+    how: LimitOptions,
+}
+
 /// Limits a program on all ways through it.
 fn limit_ways<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut input: R,
@@ -78,7 +87,12 @@ fn limit_ways<R: Read + Seek + Send, W: Write + Restart + Send>(
     } else {
         vec![options.clone()]
     };
-    let mut as_asked = limit_paths(&mut input, machine, &paths, how, &mut output, rows)?;
+    let asked = |paths| Asked {
+        machine,
+        paths,
+        how,
+    };
+    let mut as_asked = limit_paths(&mut input, asked(&paths), &mut output, rows)?;
     if !as_asked.may_skip {
         return Ok(as_asked);
     }
@@ -89,13 +103,13 @@ fn limit_ways<R: Read + Seek + Send, W: Write + Restart + Send>(
         Ok(all) => {
             input.rewind().map_err(Failure::Input)?;
             restart(&mut output, rows)?;
-            let summary = limit_paths(&mut input, machine, &all, how, &mut output, rows)?;
+            let summary = limit_paths(&mut input, asked(&all), &mut output, rows)?;
             if summary.certified || !as_asked.certified {
                 return Ok(summary);
             }
             input.rewind().map_err(Failure::Input)?;
             restart(&mut output, rows)?;
-            as_asked = limit_paths(input, machine, &paths, how, output, rows)?;
+            as_asked = limit_paths(input, asked(&paths), output, rows)?;
             summary.reasons
         }
         Err(Failure::Refused { diagnostics, .. }) => diagnostics,
@@ -113,28 +127,26 @@ fn limit_ways<R: Read + Seek + Send, W: Write + Restart + Send>(
 /// cycles written in another way.
 fn limit_paths<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut input: R,
-    machine: &Machine,
-    paths: &[Options],
-    asked: LimitOptions,
+    mut asked: Asked<'_>,
     mut output: W,
     rows: &mut Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
-    let mut how = asked;
-    let mut first = limit_text(&mut input, machine, paths, how, &mut output, rows)?;
-    if how.allowed.stop && stops::in_the_way(&first) {
-        how.allowed.stop = false;
+    let wished = asked.how;
+    let mut first = limit_text(&mut input, asked, &mut output, rows)?;
+    if wished.allowed.stop && stops::in_the_way(&first) {
+        asked.how.allowed.stop = false;
         input.rewind().map_err(Failure::Input)?;
         restart(&mut output, rows)?;
-        first = limit_text(&mut input, machine, paths, how, &mut output, rows)?;
+        first = limit_text(&mut input, asked, &mut output, rows)?;
     }
     first
         .before
         .notes
-        .extend(stops::without_word(machine, asked));
+        .extend(stops::without_word(asked.machine, wished));
     if first.certified || !in_fixed_blocks(&first) {
         return Ok(first);
     }
-    limit_expanded(input, machine, paths, how, output, rows, first)
+    limit_expanded(input, asked, output, rows, first)
 }
 
 /// Writes canned cycles in another way: first the ways to their holes stand by themselves,
@@ -142,13 +154,16 @@ fn limit_paths<R: Read + Seek + Send, W: Write + Restart + Send>(
 /// draw more next to them. What came of the program as it stands is `first`.
 fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut input: R,
-    machine: &Machine,
-    paths: &[Options],
-    how: LimitOptions,
+    asked: Asked<'_>,
     mut output: W,
     rows: &mut Option<&mut dyn RestartRows>,
     mut first: LimitSummary,
 ) -> Result<LimitSummary, Failure> {
+    let Asked {
+        machine,
+        paths,
+        how,
+    } = asked;
     let Some(program) = read_whole(&mut input)? else {
         return Ok(first);
     };
@@ -176,10 +191,10 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
             break;
         }
         let all = refused.reasons.len() >= Summary::KEPT;
-        let asked = ways.clone();
+        let before = ways.clone();
         let reasons = refused.reasons.iter().filter(|it| it.file.is_none());
         ways.extend(reasons.map(|reason| (reason.line, way)));
-        if ways == asked {
+        if ways == before {
             break;
         }
         let wanted = |line| {
@@ -204,9 +219,9 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
             Some(rows) => {
                 let mut rows = Traced::new(&mut **rows, &expanded, &original);
                 let mut rows: Option<&mut dyn RestartRows> = Some(&mut rows);
-                limit_text(text, machine, paths, how, &mut output, &mut rows)?
+                limit_text(text, asked, &mut output, &mut rows)?
             }
-            None => limit_text(text, machine, paths, how, &mut output, &mut None)?,
+            None => limit_text(text, asked, &mut output, &mut None)?,
         };
         expanded.trace(&program, &mut next);
         last = Some(next);
@@ -230,12 +245,15 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
 /// Limits a program as it stands, for all `paths` through it.
 fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut input: R,
-    machine: &Machine,
-    paths: &[Options],
-    how: LimitOptions,
+    asked: Asked<'_>,
     mut output: W,
     rows: &mut Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
+    let Asked {
+        machine,
+        paths,
+        how,
+    } = asked;
     let places = Cell::new(Vec::new());
     let learned = Cell::new(None);
     let mut attempt_with = |target: &Machine, plan: Option<Plan>, start: Depths, again: bool| {

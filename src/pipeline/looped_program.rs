@@ -124,14 +124,14 @@ impl LoopedProgram<'_> {
             for options in source.paths {
                 let writer = Writer::new(
                     Cursor::new(source.program),
+                    std::io::sink(),
                     target,
                     options,
                     Limiter::new(target, how, source.depths.clone()),
-                    detail,
-                    std::io::sink(),
-                    Some(table),
                     PowerModel::new(machine),
-                );
+                )
+                .detailed(detail)
+                .deciding(table);
                 let written;
                 (written, table) = writer.decide_all()?;
                 decided.originals.push(written.before);

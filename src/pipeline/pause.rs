@@ -9,7 +9,6 @@ use std::iter::once;
 
 use super::derate::lower_further;
 use super::over_time::OverTime;
-use super::row::Detail;
 use super::ways::has_ways;
 use super::writer::{Plan, Writer};
 use super::{Failure, LimitOptions, LimitSummary, Options};
@@ -45,16 +44,7 @@ pub(super) fn has_place<R: Read + Seek>(
     }
     let limiter = Limiter::new(machine, LimitOptions::USUAL, Depths::default());
     let model = PowerModel::new(machine);
-    let writer = Writer::new(
-        input,
-        machine,
-        options,
-        limiter,
-        Detail::NoRows,
-        sink(),
-        None,
-        model,
-    );
+    let writer = Writer::new(input, sink(), machine, options, limiter, model);
     let written = writer.pausing(Some(Plan::NEVER)).run(&mut |batch| {
         batch.clear();
         Ok(())

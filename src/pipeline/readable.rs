@@ -3,7 +3,7 @@
 
 use super::Reading;
 use crate::diagnostic::Diagnostic;
-use crate::interpret::{Diagnostics, Facts, Interpreter};
+use crate::interpret::{Diagnostics, Effects, Facts, Interpreter};
 use crate::machine::{AXES, AxisValues, KnobTarget, Machine};
 use crate::rewrite::knob_lines;
 use crate::syntax::{Block, scan_line};
@@ -57,7 +57,12 @@ fn is_read(machine: &Machine, index: usize) -> bool {
     for (number, line) in (1..).zip(&lines) {
         scan_line(line.as_bytes(), number == 1, &mut block);
         let text = line.as_bytes();
-        interpreter.execute(number, text, &mut block, &mut steps, &mut facts, &mut found);
+        interpreter.execute(
+            number,
+            text,
+            &mut block,
+            Effects::new(&mut steps, &mut facts, &mut found),
+        );
     }
     found.list.is_empty() && *interpreter.knobs() != before
 }

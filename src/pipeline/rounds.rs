@@ -176,14 +176,13 @@ impl Job<'_> {
         let limiter = Limiter::new(target, how, depths.clone());
         let writer = Writer::new(
             &mut input,
+            &mut output,
             target,
             options,
             limiter,
-            detail,
-            &mut output,
-            None,
             PowerModel::new(machine),
         )
+        .detailed(detail)
         .pausing(plan)
         .stopping(stopping);
         let streamed = if options.threads > 1 {

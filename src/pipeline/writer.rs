@@ -108,15 +108,12 @@ pub(super) struct Writer<'m, R, W> {
 
 impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
     /// `machine` has the limits that are aimed at, `model` those that rows show.
-    #[allow(clippy::too_many_arguments, reason = "a part of `limit`")]
     pub(super) fn new(
         input: R,
+        output: W,
         machine: &'m Machine,
         options: &Options,
         limiter: Limiter<'m>,
-        detail: Detail,
-        output: W,
-        table: Option<Table>,
         model: PowerModel,
     ) -> Self {
         let front = Executor::new(input, machine, options);
@@ -146,7 +143,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             reasons: Reasons::default(),
             unsplit: Unsplit::default(),
             presets: PresetNotes::default(),
-            detail,
+            detail: Detail::NoRows,
             model,
             start_s: 0.0,
             first_feed: None,
@@ -156,8 +153,20 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             stopping: None,
             stop_is_wanted: false,
             comment,
-            table,
+            table: None,
         }
+    }
+
+    /// With what rows want of each move.
+    pub(super) fn detailed(mut self, detail: Detail) -> Self {
+        self.detail = detail;
+        self
+    }
+
+    /// What it decides comes into a table, and nothing is written.
+    pub(super) fn deciding(mut self, table: Table) -> Self {
+        self.table = Some(table);
+        self
     }
 
     /// Reads and writes the whole program; `deliver` takes the pieces. `None` where it is to

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use gwatt::interpret::{Diagnostics, Facts, Interpreter, Move, Reading, Step};
+use gwatt::interpret::{Diagnostics, Effects, Facts, Interpreter, Move, Reading, Step};
 use gwatt::machine::{CornerRule, Machine, builtin_controller};
 use gwatt::power::{Assessment, Assessor, Certificate, Want};
 use gwatt::syntax::{Block, scan_line};
@@ -39,7 +39,12 @@ pub(super) fn judged_for(machine: &Machine, program: &str, want: Want) -> Vec<(u
         let line = line.as_bytes();
         scan_line(line, true, &mut block);
         steps.clear();
-        interpreter.execute(number, line, &mut block, &mut steps, &mut facts, &mut said);
+        interpreter.execute(
+            number,
+            line,
+            &mut block,
+            Effects::new(&mut steps, &mut facts, &mut said),
+        );
         for step in &steps {
             match step {
                 Step::Move(mv) => assessor.push(mv, line, &mut keep),

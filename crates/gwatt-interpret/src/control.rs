@@ -16,7 +16,7 @@ use super::position::{BlockDelete, Position};
 use super::printer;
 use super::probe::Probe;
 use super::program_coordinates::{Polar, Programmed};
-use super::report::Report;
+use super::report::{Diagnostics, Report};
 use super::special::Special;
 use super::spindle_announced::Announced;
 use super::spindle_speed::SpindleMode;
@@ -104,9 +104,12 @@ pub(super) trait Language: fmt::Debug + Sync {
     }
 
     /// Whether a line is a command with parameters of its own and no block of words.
-    fn is_command(&self, _block: &Block) -> bool {
+    fn is_command(&self, _control: &Control<'_>, _block: &Block, _text: &[u8]) -> bool {
         false
     }
+
+    /// Executes such a line.
+    fn command(&self, _control: &mut Control<'_>, _run: &mut Run<'_, '_>) {}
 
     /// A block begins: whether it has to be read, though the scanner took it for plain words.
     fn begin_block(&self, _control: &mut Control<'_>, _block: &Block, _text: &[u8]) -> bool {
@@ -149,6 +152,41 @@ pub(super) trait Language: fmt::Debug + Sync {
 
     /// A subprogram has ended.
     fn leave(&self, _control: &mut Control<'_>) {}
+}
+
+/// What a block does goes into these.
+#[derive(Debug)]
+pub struct Effects<'a> {
+    /// Its moves and actions are added.
+    pub steps: &'a mut Vec<Step>,
+    /// What it is besides its moves; filled in.
+    pub facts: &'a mut Facts,
+    /// What is wrong with it is added.
+    pub diagnostics: &'a mut Diagnostics,
+}
+
+impl<'a> Effects<'a> {
+    /// Into these.
+    #[inline]
+    pub fn new(
+        steps: &'a mut Vec<Step>,
+        facts: &'a mut Facts,
+        diagnostics: &'a mut Diagnostics,
+    ) -> Self {
+        Self {
+            steps,
+            facts,
+            diagnostics,
+        }
+    }
+}
+
+/// A block that is held with its place.
+#[derive(Clone, Copy)]
+pub(super) struct HeldBlock<'a> {
+    pub(super) line: u64,
+    pub(super) text: &'a [u8],
+    pub(super) block: &'a Block,
 }
 
 /// The block that is being executed.

@@ -4,7 +4,7 @@ use crate::rules::rules_of;
 use std::cell::Cell;
 
 use super::compensation::Choice;
-use super::control::{Control, Run};
+use super::control::{Control, Effects, Run};
 use super::facts::Facts;
 use super::fast_path::is_direct;
 use super::knob::KnobState;
@@ -15,7 +15,7 @@ use super::position::{Position, Reading};
 use super::printer;
 use super::probe::Probe;
 use super::program_coordinates::Programmed;
-use super::report::{Diagnostics, Report};
+use super::report::Report;
 use super::special::Special;
 use super::spindle_announced::Announced;
 use super::spindle_speed::SpindleMode;
@@ -25,7 +25,6 @@ use super::tools::Tools;
 use super::turning::Turning;
 use super::words::Words;
 use gwatt_machine::Machine;
-use gwatt_motion::Step;
 use gwatt_syntax::Block;
 
 /// Executes the blocks of a program.
@@ -115,20 +114,16 @@ impl<'m> Interpreter<'m> {
         self.control.ended
     }
 
-    /// Executes one block: appends what it does to `steps`. What is not
+    /// Executes one block: what it does goes into `effects`. What is not
     /// understood is reported, and the block then does nothing. Words whose
-    /// values are worked out get them in `block`. What the block is comes into
-    /// `facts`.
+    /// values are worked out get them in `block`.
     #[inline]
-    pub fn execute(
-        &mut self,
-        line: u64,
-        text: &[u8],
-        block: &mut Block,
-        steps: &mut Vec<Step>,
-        facts: &mut Facts,
-        diagnostics: &mut Diagnostics,
-    ) {
+    pub fn execute(&mut self, line: u64, text: &[u8], block: &mut Block, effects: Effects<'_>) {
+        let Effects {
+            steps,
+            facts,
+            diagnostics,
+        } = effects;
         let noted = self.control.note_message(line, text, block, steps);
         if block.issues.is_empty()
             && let Some(()) = self.control.direct(line, text, block, steps, facts)
@@ -138,22 +133,19 @@ impl<'m> Interpreter<'m> {
             return;
         }
         *facts = Facts::default();
-        self.execute_any(line, text, block, steps, facts, diagnostics);
+        self.execute_any(line, text, block, Effects::new(steps, facts, diagnostics));
         self.control.check_expression();
         // It may have gone the short way with values that were worked out.
         facts.plain = false;
     }
 
     /// The same for any block; `facts` are those of nothing.
-    fn execute_any(
-        &mut self,
-        line: u64,
-        text: &[u8],
-        block: &mut Block,
-        steps: &mut Vec<Step>,
-        facts: &mut Facts,
-        diagnostics: &mut Diagnostics,
-    ) {
+    fn execute_any(&mut self, line: u64, text: &[u8], block: &mut Block, effects: Effects<'_>) {
+        let Effects {
+            steps,
+            facts,
+            diagnostics,
+        } = effects;
         self.control.parameters.line = line;
         let mut report = Report {
             diagnostics,
@@ -163,23 +155,19 @@ impl<'m> Interpreter<'m> {
         if self.control.passes_over(block, &mut report) {
             return;
         }
-        if self.control.language.is_command(block) {
-            return self.command_line(block, steps, facts, report);
-        }
-        if self.control.is_dollar(text) {
-            let words = &mut self.words;
+        let language = self.control.language;
+        let control = &mut self.control;
+        if language.is_command(control, block, text) {
             let mut run = Run {
                 line,
                 block,
-                words,
+                words: &mut self.words,
                 facts,
                 steps,
                 report,
             };
-            return self.control.dollar(&mut run);
+            return language.command(control, &mut run);
         }
-        let language = self.control.language;
-        let control = &mut self.control;
         let asks = language.begin_block(control, block, text);
         let beyond = asks || !block.issues.is_empty();
         let transfers = beyond && language.read(control, block, &mut report);
@@ -233,26 +221,6 @@ impl<'m> Interpreter<'m> {
             self.control.transfer = None;
         }
         run.facts.transfers = self.control.transfer.is_some();
-    }
-
-    /// A printer's command.
-    fn command_line(
-        &mut self,
-        block: &Block,
-        steps: &mut Vec<Step>,
-        facts: &mut Facts,
-        report: Report<'_, '_>,
-    ) {
-        let mut run = Run {
-            line: report.line,
-            block,
-            words: &mut self.words,
-            facts,
-            steps,
-            report,
-        };
-        self.control.begun = true;
-        self.control.command_line(&mut run);
     }
 }
 

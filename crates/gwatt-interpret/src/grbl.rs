@@ -2,7 +2,7 @@
 
 use super::control::{Control, Run};
 use crate::rules::Macros;
-use gwatt_motion::{ActionKind, MoveKind};
+use gwatt_motion::ActionKind;
 
 /// Commands that show something or unlock, and move nothing.
 const IDLE: [&str; 6] = ["$X", "$$", "$#", "$G", "$I", "$N"];
@@ -81,7 +81,7 @@ impl Control<'_> {
         let end = self.position.at;
         // grbl takes $H only while it is idle, and goes on once the axes stand.
         run.act(ActionKind::Rest, 0.0);
-        self.go_at(run, MoveKind::Feed, &end, all, None, Some(speed_mm_s));
+        self.go_at(run, &end, all, Some(speed_mm_s));
         for axis in all.iter() {
             let reference_mm = self.machine.axes[axis]
                 .as_ref()

@@ -89,6 +89,7 @@ mod words;
 mod written_out;
 
 pub use code::Motion;
+pub use control::Effects;
 pub use execute::Interpreter;
 pub use facts::{Facts, TOOL_CHANGE_UNKNOWN, ToolWords};
 pub use fast_path_state::FastPathState;

@@ -12,6 +12,16 @@ use gwatt_machine::{ALL_AXES, AxisKind, AxisSet, AxisValues};
 use gwatt_motion::{Arc, FeedMode, Move, MoveKind, Step, Stray, hold_to_path, path_length};
 use gwatt_syntax::source::Span;
 
+/// Where a move goes.
+#[derive(Clone, Copy)]
+struct Way<'a> {
+    kind: MoveKind,
+    end: &'a AxisValues,
+    /// Axes whose place at its start is not known.
+    unknown_start: AxisSet,
+    arc: Option<Arc>,
+}
+
 impl Control<'_> {
     /// The block's motion, with what else uses axis words.
     pub(super) fn motion(&mut self, run: &mut Run<'_, '_>) {
@@ -202,20 +212,40 @@ impl Control<'_> {
         unknown_start: AxisSet,
         arc: Option<Arc>,
     ) {
-        self.go_at(run, kind, end, unknown_start, arc, None);
+        let way = Way {
+            kind,
+            end,
+            unknown_start,
+            arc,
+        };
+        self.go_along(run, way, None);
     }
 
-    /// As [`Self::go`]; at `feed_mm_s` instead of F, where it is given.
-    #[inline]
+    /// A feed in a straight line to `end`, at a speed of its own instead of F.
     pub(super) fn go_at(
         &mut self,
         run: &mut Run<'_, '_>,
-        kind: MoveKind,
         end: &AxisValues,
         unknown_start: AxisSet,
-        arc: Option<Arc>,
-        given_mm_s: Option<f64>,
+        speed_mm_s: Option<f64>,
     ) {
+        let way = Way {
+            kind: MoveKind::Feed,
+            end,
+            unknown_start,
+            arc: None,
+        };
+        self.go_along(run, way, speed_mm_s);
+    }
+
+    #[inline]
+    fn go_along(&mut self, run: &mut Run<'_, '_>, way: Way<'_>, given_mm_s: Option<f64>) {
+        let Way {
+            kind,
+            end,
+            unknown_start,
+            arc,
+        } = way;
         let start = &self.position.at;
         let mut moving = AxisSet::default();
         for axis in self.machine.axis_set.iter() {

@@ -176,20 +176,20 @@ impl Control<'_> {
             // From `radius` at `angle` to the other side; the first half circle
             // has its end, not its beginning, at the angle.
             let from = if radius == 0.0 { angle - PI } else { angle };
-            self.half_circle(center, from, radius, *next, side, run);
+            self.half_circle(center, from, [radius, *next], side, run);
             angle = from + PI;
             let start = at(center, angle, *next);
-            self.pocket_arc(
-                [center[X], center[Y]],
-                *next,
-                angle,
-                side * TAU,
-                &start,
-                run,
-            );
+            let circle = Arc {
+                plane: [X, Y],
+                center: [center[X], center[Y]],
+                radius_mm: *next,
+                start_angle_rad: angle,
+                sweep_rad: side * TAU,
+            };
+            self.pocket_arc(circle, &start, run);
             radius = *next;
         }
-        self.half_circle(center, angle, radius, 0.0, side, run);
+        self.half_circle(center, angle, [radius, 0.0], side, run);
     }
 
     /// From a radius at an angle to another at the opposite side.
@@ -197,8 +197,7 @@ impl Control<'_> {
         &mut self,
         center: &AxisValues,
         angle: f64,
-        from: f64,
-        to: f64,
+        [from, to]: [f64; 2],
         side: f64,
         run: &mut Run<'_, '_>,
     ) {
@@ -208,26 +207,17 @@ impl Control<'_> {
         } else {
             at(center, angle + PI, to)
         };
-        let radius = f64::midpoint(from, to);
-        self.pocket_arc([middle[X], middle[Y]], radius, angle, side * PI, &end, run);
+        let half = Arc {
+            plane: [X, Y],
+            center: [middle[X], middle[Y]],
+            radius_mm: f64::midpoint(from, to),
+            start_angle_rad: angle,
+            sweep_rad: side * PI,
+        };
+        self.pocket_arc(half, &end, run);
     }
 
-    fn pocket_arc(
-        &mut self,
-        center: [f64; 2],
-        radius_mm: f64,
-        start_angle_rad: f64,
-        sweep_rad: f64,
-        end: &AxisValues,
-        run: &mut Run<'_, '_>,
-    ) {
-        let arc = Arc {
-            plane: [X, Y],
-            center,
-            radius_mm,
-            start_angle_rad,
-            sweep_rad,
-        };
+    fn pocket_arc(&mut self, arc: Arc, end: &AxisValues, run: &mut Run<'_, '_>) {
         self.go(run, MoveKind::Arc, end, AxisSet::default(), Some(arc));
     }
 }

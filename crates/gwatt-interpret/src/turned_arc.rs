@@ -158,14 +158,7 @@ impl Control<'_> {
                 let mapped = map(&point);
                 place[..frame::SPACE].copy_from_slice(&mapped[..frame::SPACE]);
             }
-            self.go_at(
-                run,
-                MoveKind::Feed,
-                &place,
-                AxisSet::default(),
-                None,
-                Some(speed_mm_s),
-            );
+            self.go_at(run, &place, AxisSet::default(), Some(speed_mm_s));
         }
         let own = run.steps.get_mut(before..).unwrap_or_default();
         let moves = |step: &Step| match step {

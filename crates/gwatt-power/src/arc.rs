@@ -13,26 +13,16 @@ use super::arc_circle::Circle;
 use super::arc_energy;
 use super::axis::Side;
 use super::demand::{Totals, Want};
-use super::model::{ConverterPower, PowerModel};
 use super::search::Search;
-use gwatt_motion::{Arc, Move};
 use gwatt_plan::{Phase, PhaseKind, Profile};
 
 /// The converter's share of an arc.
-pub(super) fn totals(
-    model: &PowerModel,
-    converter: &ConverterPower,
-    mv: &Move,
-    arc: &Arc,
-    profile: &Profile,
-    idle_w: f64,
-    want: Want,
-) -> Totals {
-    let circle = Circle::new(model, converter, mv, arc, idle_w);
+pub(super) fn totals(circle: &Circle<'_>, profile: &Profile, want: Want) -> Totals {
+    let idle_w = circle.idle_w;
     let mut totals = Totals::at_rest(idle_w, profile.duration_s(), want);
     let steady = |phase: &Phase| phase.kind == PhaseKind::ConstantAcceleration;
     if !profile.phases.iter().all(steady) {
-        changing_totals(&circle, profile, want, &mut totals);
+        changing_totals(circle, profile, want, &mut totals);
         return totals;
     }
     let mut peak = Search::new(idle_w, want.floor_w);
@@ -48,7 +38,7 @@ pub(super) fn totals(
     totals.raise_regen(regen.upper());
     if want.energy {
         for phase in &profile.phases {
-            totals.energy_j += arc_energy::phase_energy_j(&circle, phase);
+            totals.energy_j += arc_energy::phase_energy_j(circle, phase);
         }
     }
     totals

@@ -12,7 +12,7 @@ use super::effect::{Effect, Switched};
 use super::idle::Idle;
 use super::late::unpaced;
 use super::line::Line;
-use super::lookahead::Ahead;
+use super::lookahead::{Ahead, Arrival};
 use super::model::PowerModel;
 use super::motion::Motion;
 use super::observer::Observer;
@@ -202,7 +202,12 @@ impl<'m> Assessor<'m> {
         let Some(ahead) = &mut self.ahead else {
             return;
         };
-        if !ahead.push_path(machine, model, observer, mv, text, self.want) {
+        let arrival = Arrival {
+            mv,
+            text,
+            want: self.want,
+        };
+        if !ahead.push_path(machine, model, observer, arrival) {
             return self.push_between(mv, text, sink);
         }
         ahead.emit(machine, model, observer, sink);
@@ -231,7 +236,12 @@ impl<'m> Assessor<'m> {
             observer.show(machine, mv, self.nominal);
             sink(mv, &alone, text);
         } else {
-            ahead.push_other(machine, model, observer, mv, text, alone, self.want);
+            let arrival = Arrival {
+                mv,
+                text,
+                want: self.want,
+            };
+            ahead.push_other(machine, model, observer, arrival, alone);
             ahead.emit(machine, model, observer, sink);
         }
     }
@@ -335,7 +345,8 @@ impl<'m> Assessor<'m> {
             return;
         }
         assessment.blended = true;
-        self.hold(mv, text, assessment, figures.as_ref(), rested, sink);
+        let bound = self.blending_bound(mv, figures.as_ref());
+        self.hold(mv, text, assessment, (bound, rested), sink);
     }
 
     /// Passes on what was waiting, at the end of the program.

@@ -17,24 +17,17 @@ use gwatt_machine::AXES;
 use gwatt_motion::Move;
 use gwatt_plan::{Phase, PhaseKind, Profile};
 
-/// Evaluates the interval from `start` to `end`, s. No axis switches inside.
-pub(super) fn interval(
-    model: &PowerModel,
-    converter: &ConverterPower,
-    mv: &Move,
-    profiles: &[(usize, Profile)],
-    (start, end): (f64, f64),
-    want: Want,
-    totals: &mut Totals,
-) {
-    let axes = parts(model, converter, mv, profiles, (start, end));
+/// What each axis does in an interval in which none switches.
+pub(super) type Parts<'a> = ArrayVec<(Phase, Follower<'a>), AXES>;
+
+/// Evaluates an interval.
+pub(super) fn interval(axes: Parts<'_>, credit_regen: bool, want: Want, totals: &mut Totals) {
     let over_time = axes.iter().all(|(part, _)| {
         matches!(
             part.kind,
             PhaseKind::ConstantAcceleration | PhaseKind::ConstantJerk { .. }
         )
     });
-    let credit_regen = converter.credit_regen;
     if over_time {
         let axes: ArrayVec<Follower<'_>, AXES> = axes.into_iter().map(|(_, axis)| axis).collect();
         Stretch {
@@ -63,14 +56,14 @@ pub(super) fn interval(
     totals.raise_regen(regen_w - credit_w);
 }
 
-/// What each axis of the converter does in an interval.
+/// What each axis of the converter does from `start` to `end`, s.
 pub(super) fn parts<'a>(
     model: &'a PowerModel,
     converter: &ConverterPower,
     mv: &Move,
     profiles: &[(usize, Profile)],
     (start, end): (f64, f64),
-) -> ArrayVec<(Phase, Follower<'a>), AXES> {
+) -> Parts<'a> {
     profiles
         .iter()
         .filter(|(axis, _)| converter.axes.contains(*axis))

@@ -36,15 +36,8 @@ pub(super) fn totals(
     let mut start = 0.0;
     for end in instants {
         if end > start && !steady {
-            changing::interval(
-                model,
-                converter,
-                mv,
-                profiles,
-                (start, end),
-                want,
-                &mut totals,
-            );
+            let axes = changing::parts(model, converter, mv, profiles, (start, end));
+            changing::interval(axes, converter.credit_regen, want, &mut totals);
             start = end;
         } else if end > start {
             let ramps = ramps(model, converter, mv, profiles, start, end);

@@ -185,8 +185,7 @@ impl Observer {
     #[inline]
     pub fn blended(
         &mut self,
-        machine: &Machine,
-        model: &PowerModel,
+        (machine, model): (&Machine, &PowerModel),
         mv: &Move,
         parts: &[Part<'_>],
         kept: &mut Buffered,

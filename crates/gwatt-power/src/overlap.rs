@@ -9,6 +9,7 @@
 //! plus the smallest of the spindle: branch and bound over the time, where both
 //! figures of both are exact.
 
+use super::arc_circle::Circle;
 use super::demand::Want;
 use super::model::{ConverterPower, PowerModel};
 use super::spindle_trace::{SpindleSpan, SpindleTrace};
@@ -196,7 +197,10 @@ impl<'a> Axes<'a> {
             Trajectory::Path(profile) => {
                 let part = profile.part(from, to);
                 match &mv.arc {
-                    Some(arc) => arc::totals(self.model, converter, mv, arc, &part, idle_w, want),
+                    Some(arc) => {
+                        let circle = Circle::new(self.model, converter, mv, arc, idle_w);
+                        arc::totals(&circle, &part, want)
+                    }
                     None => straight::totals(self.model, converter, mv, &part, idle_w, want),
                 }
             }

@@ -1,6 +1,6 @@
 //! A move for tests of what holds moves.
 
-use gwatt_interpret::{Diagnostics, Facts, Interpreter, Move, Reading, Step};
+use gwatt_interpret::{Diagnostics, Effects, Facts, Interpreter, Move, Reading, Step};
 use gwatt_machine::Machine;
 use gwatt_syntax::{Block, scan_line};
 
@@ -12,7 +12,12 @@ pub(super) fn any_move(machine: &Machine) -> Move {
     let (mut block, mut steps) = (Block::default(), Vec::new());
     let (mut facts, mut found) = (Facts::default(), Diagnostics::default());
     scan_line(text, true, &mut block);
-    interpreter.execute(1, text, &mut block, &mut steps, &mut facts, &mut found);
+    interpreter.execute(
+        1,
+        text,
+        &mut block,
+        Effects::new(&mut steps, &mut facts, &mut found),
+    );
     let moves = steps.into_iter().find_map(|step| match step {
         Step::Move(mv) => Some(mv),
         Step::Action(_) => None,

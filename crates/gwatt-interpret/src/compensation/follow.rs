@@ -86,7 +86,7 @@ impl Compensation {
                         self.hold.finish(out)?;
                     }
                     self.hold
-                        .round(&mut mv, corner, element.start, self.side, at_end, out)?;
+                        .round(&mut mv, [corner, element.start], self.side, at_end, out)?;
                 }
                 Bend::Outside => self.straight_round(&mv, corner, &before, &element, out)?,
             }

@@ -189,8 +189,7 @@ impl Hold {
     pub(super) fn round(
         &mut self,
         mv: &mut Move,
-        pivot: Vector,
-        end: Vector,
+        [pivot, end]: [Vector; 2],
         side: f64,
         shares: bool,
         out: &mut Vec<Step>,

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use proptest::prelude::*;
 
 use super::*;
-use crate::{Diagnostics, Interpreter, Reading, Start};
+use crate::{Diagnostics, Effects, Interpreter, Reading, Start};
 use gwatt_syntax::scan_line;
 
 /// Controllers, with words that bring each into states of its own.
@@ -187,9 +187,7 @@ proptest! {
             let [short, long] = ways.each_mut().map(|(interpreter, diagnostics, facts)| {
                 let (mut block, mut steps) = (Block::default(), Vec::new());
                 scan_line(line.as_bytes(), number == 1, &mut block);
-                interpreter.execute(
-                    number, line.as_bytes(), &mut block, &mut steps, facts, diagnostics,
-                );
+                interpreter.execute(number, line.as_bytes(), &mut block, Effects::new(&mut steps, facts, diagnostics));
                 let control = &interpreter.control;
                 let state = format!(
                     "{:?} {:?} {:?} {:?} {}",
@@ -221,10 +219,7 @@ proptest! {
             let mut run = |interpreter: &mut Interpreter<'_>, which: usize| {
                 let mut block = Block::default();
                 scan_line(line.as_bytes(), number == 1, &mut block);
-                interpreter.execute(
-                    number, line.as_bytes(), &mut block, &mut steps[which],
-                    &mut facts[which], &mut diagnostics[which],
-                );
+                interpreter.execute(number, line.as_bytes(), &mut block, Effects::new(&mut steps[which], &mut facts[which], &mut diagnostics[which]));
                 facts[which].plain
             };
             if run(&mut one, 0) {
@@ -260,9 +255,7 @@ fn a_block_that_works_values_out_is_not_plain() {
             1,
             line.as_bytes(),
             &mut block,
-            &mut steps,
-            &mut facts,
-            &mut diagnostics,
+            Effects::new(&mut steps, &mut facts, &mut diagnostics),
         );
         assert_eq!(steps.len(), 1, "{line}");
         facts.plain

@@ -1,10 +1,9 @@
 //! What is done after a line: the moves of cycles about contours, and where it goes on.
 
 use super::{Flow, FlowError};
+use crate::control::Effects;
 use crate::execute::Interpreter;
-use crate::facts::Facts;
 use crate::jump::Transfer;
-use crate::report::Diagnostics;
 use gwatt_motion::Step;
 use gwatt_syntax::Block;
 use gwatt_syntax::diagnostic::Diagnostic;
@@ -13,39 +12,40 @@ impl Flow {
     /// Lets the program go on after the line that was just executed with these results,
     /// as the line's run number `run` from 1 ([`Self::begin_line`]).
     ///
-    /// Moves of a turning cycle about a contour are added to `steps`, what is wrong to
-    /// `diagnostics`. False where the program does not go on, as errors keep it from that.
+    /// Moves of a turning cycle about a contour are added to `effects`, and what is wrong. False where the program does not go on, as errors keep it from that.
     pub fn conclude(
         &mut self,
         run: u32,
         interpreter: &mut Interpreter<'_>,
         block: &Block,
-        steps: &mut Vec<Step>,
-        facts: &mut Facts,
-        diagnostics: &mut Diagnostics,
+        mut effects: Effects<'_>,
     ) -> bool {
         // What is wrong in a loop is wrong in each of its runs.
-        let mut stuck = diagnostics.errors > 0 && run > 1;
+        let mut stuck = effects.diagnostics.errors > 0 && run > 1;
         let mut transfer = interpreter.transfer();
         let mut done = Ok(());
         let cycle = match &mut transfer {
             Some(Transfer::Contour(contour)) => {
-                let done = self.turn(contour, interpreter, block, steps, diagnostics);
+                let done = self.turn(contour, interpreter, block, &mut effects);
+                let facts = &mut *effects.facts;
                 facts.contour = contour.lines;
                 facts.guessed = facts.guessed.or(contour.guessed());
                 Some(done)
             }
             Some(Transfer::LatheCycle(cycle)) => {
-                Some(self.lathe_cycle(cycle, interpreter, block, steps, diagnostics))
+                Some(self.lathe_cycle(cycle, interpreter, block, &mut effects))
             }
             _ => None,
         };
         if let Some(cycle) = cycle {
             done = cycle;
-            stuck |= diagnostics.errors > 0;
+            stuck |= effects.diagnostics.errors > 0;
             transfer = None;
         }
-        let moves = steps.iter().filter(|step| matches!(step, Step::Move(_)));
+        let moves = effects
+            .steps
+            .iter()
+            .filter(|step| matches!(step, Step::Move(_)));
         if done.is_ok() {
             done = self.end_line(run, moves.clone().count());
         }
@@ -58,7 +58,7 @@ impl Flow {
         }
         if let Err(trouble) = done {
             stuck = true;
-            diagnostics.push(*trouble);
+            effects.diagnostics.push(*trouble);
         }
         !stuck
     }

@@ -1,11 +1,10 @@
 //! Reads the blocks of a contour for a turning cycle.
 
 use super::{Flow, FlowError};
+use crate::control::{Effects, HeldBlock};
 use crate::execute::Interpreter;
 use crate::facts::Facts;
-use crate::report::Diagnostics;
 use crate::turning::{Contour, ContourCycle};
-use gwatt_motion::Step;
 use gwatt_syntax::diagnostic::Diagnostic;
 use gwatt_syntax::{Block, scan_line};
 
@@ -14,16 +13,15 @@ const LINES_MAX: usize = 10_000;
 
 impl Flow {
     /// Executes the contour from P to Q for a cycle of the line that is being
-    /// executed, and adds the cycle's moves to `steps`.
+    /// executed, and adds the cycle's moves to `effects`.
     pub(crate) fn turn(
         &mut self,
         contour: &mut Contour,
         interpreter: &mut Interpreter<'_>,
         block: &Block,
-        steps: &mut Vec<Step>,
-        diagnostics: &mut Diagnostics,
+        effects: &mut Effects<'_>,
     ) -> Result<(), Box<Diagnostic>> {
-        self.contour(contour, interpreter, block, steps, diagnostics)
+        self.contour(contour, interpreter, block, effects)
             .map_err(|trouble| self.trouble(trouble))
     }
 
@@ -32,12 +30,11 @@ impl Flow {
         contour: &mut Contour,
         interpreter: &mut Interpreter<'_>,
         block: &Block,
-        steps: &mut Vec<Step>,
-        diagnostics: &mut Diagnostics,
+        effects: &mut Effects<'_>,
     ) -> Result<(), FlowError> {
         let first = self.find_block(contour.first, self.next)?;
         let before = interpreter.before_contour(contour);
-        let errors = diagnostics.errors;
+        let errors = effects.diagnostics.errors;
         let mut found = Vec::new();
         let (mut own, mut facts) = (Block::default(), Facts::default());
         let mut place = first;
@@ -57,8 +54,9 @@ impl Flow {
             };
             scan_line(text, false, &mut own);
             let number = place.line as u64 + 1;
-            interpreter.execute(number, text, &mut own, &mut found, &mut facts, diagnostics);
-            if diagnostics.errors != errors {
+            let into = Effects::new(&mut found, &mut facts, effects.diagnostics);
+            interpreter.execute(number, text, &mut own, into);
+            if effects.diagnostics.errors != errors {
                 return Ok(());
             }
             if place == first {
@@ -84,17 +82,12 @@ impl Flow {
             self.next = place;
         }
         let text = self.text().to_vec();
-        let line = self.now.line as u64 + 1;
-        interpreter.turn(
-            contour,
-            before,
-            found,
-            line,
-            &text,
+        let held = HeldBlock {
+            line: self.now.line as u64 + 1,
+            text: &text,
             block,
-            steps,
-            diagnostics,
-        );
+        };
+        interpreter.turn(contour, before, found, held, effects);
         Ok(())
     }
 }

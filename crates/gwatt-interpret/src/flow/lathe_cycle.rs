@@ -1,40 +1,43 @@
 //! Runs through the subroutine of a contour for a turning cycle of `LinuxCNC`.
 
 use super::{Flow, FlowError};
+use crate::control::{Effects, HeldBlock};
 use crate::execute::Interpreter;
 use crate::jump::{Transfer, Verb};
 use crate::lathe_cycle::LatheCycle;
 use crate::lathe_cycle::contour::Reader;
 use crate::parameters::LOCALS;
 use crate::report::Diagnostics;
-use gwatt_motion::Step;
 use gwatt_syntax::Block;
 use gwatt_syntax::diagnostic::Diagnostic;
 
 impl Flow {
     /// Reads the contour for a cycle of the line that is being executed, and
-    /// adds the cycle's moves to `steps`.
+    /// adds the cycle's moves to `effects`.
     pub(crate) fn lathe_cycle(
         &mut self,
         cycle: &LatheCycle,
         interpreter: &mut Interpreter<'_>,
         block: &Block,
-        steps: &mut Vec<Step>,
-        diagnostics: &mut Diagnostics,
+        effects: &mut Effects<'_>,
     ) -> Result<(), Box<Diagnostic>> {
         let here = self.now;
-        let errors = diagnostics.errors;
+        let errors = effects.diagnostics.errors;
         let mut reader = interpreter.begin_contour(cycle);
-        let done = self.contour_sub(cycle, &mut reader, interpreter, diagnostics);
+        let done = self.contour_sub(cycle, &mut reader, interpreter, effects.diagnostics);
         interpreter.end_contour(&reader);
         done?;
         self.now = here;
-        if diagnostics.errors != errors {
+        if effects.diagnostics.errors != errors {
             return Ok(());
         }
-        let number = here.line as u64 + 1;
         let text = self.text().to_vec();
-        interpreter.run_lathe_cycle(cycle, reader, number, &text, block, steps, diagnostics);
+        let held = HeldBlock {
+            line: here.line as u64 + 1,
+            text: &text,
+            block,
+        };
+        interpreter.run_lathe_cycle(cycle, reader, held, effects);
         Ok(())
     }
 

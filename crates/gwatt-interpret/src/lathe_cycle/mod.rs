@@ -39,15 +39,19 @@ enum Cycle {
     /// G70: distances of the first and the last pass from the contour.
     Finish { first: f64, last: f64, times: u32 },
     /// G71, and G72 (facing).
-    Rough {
-        facing: bool,
-        pockets: Pockets,
-        /// What is left for finishing, next to the contour and in Z and X.
-        left: f64,
-        shift: Vector,
-        depth: f64,
-        retract: f64,
-    },
+    Rough(RoughCycle),
+}
+
+/// The values of a roughing cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct RoughCycle {
+    facing: bool,
+    pockets: Pockets,
+    /// What is left for finishing, next to the contour and in Z and X.
+    left: f64,
+    shift: Vector,
+    depth: f64,
+    retract: f64,
 }
 
 /// What happens to valleys after the first.

@@ -7,7 +7,7 @@
 
 use super::piece::{Piece, Round, SMALL, Way};
 use super::shape::Shape;
-use super::{Cycle, Fault, Pockets};
+use super::{Cycle, Fault, Pockets, RoughCycle};
 use crate::vector::{Vector, add, distance};
 
 const Z: usize = 0;
@@ -38,14 +38,7 @@ pub(super) fn cuts(cycle: &Cycle, pieces: Vec<Piece>, start: Vector) -> Result<V
     let shape = Shape::new(pieces, start)?;
     match *cycle {
         Cycle::Finish { first, last, times } => finish(shape, first, last, times),
-        Cycle::Rough {
-            facing,
-            pockets,
-            left,
-            shift,
-            depth,
-            retract,
-        } => rough(shape, facing, pockets, left, shift, depth, retract),
+        Cycle::Rough(values) => rough(shape, values),
     }
 }
 
@@ -92,23 +85,16 @@ fn placed(shape: &Shape, (to, kind): (Vector, CutKind)) -> Cut {
     }
 }
 
-fn rough(
-    mut shape: Shape,
-    facing: bool,
-    pockets: Pockets,
-    left: f64,
-    shift: Vector,
-    depth: f64,
-    retract: f64,
-) -> Result<Vec<Cut>, Fault> {
-    if facing {
+/// G71 and G72: cuts along Z, or along X.
+fn rough(mut shape: Shape, values: RoughCycle) -> Result<Vec<Cut>, Fault> {
+    if values.facing {
         shape.turn();
     }
     shape.face()?;
     shape.break_corners()?;
     shape.check()?;
-    shape.shift(left)?;
-    shape.move_by(shift);
+    shape.shift(values.left)?;
+    shape.move_by(values.shift);
     let begin = shape.first()?.start;
     let last = shape.last()?;
     if last.end[X] < begin[X] {
@@ -120,11 +106,11 @@ fn rough(
         pieces: &shape.pieces,
         at: begin,
         out: vec![(begin, CutKind::Rapid)],
-        depth: depth.max(2.0 * SAME),
-        retract,
+        depth: values.depth.max(2.0 * SAME),
+        retract: values.retract,
         tops: vec![begin],
     };
-    roughing.run(pockets)?;
+    roughing.run(values.pockets)?;
     let out = roughing.out;
     Ok(out.into_iter().map(|cut| placed(&shape, cut)).collect())
 }

@@ -2,22 +2,21 @@
 
 use super::contour::Reader;
 use super::passes::{Cut, CutKind};
-use super::{Cycle, FIXED, LatheCycle, Pockets, SAME_PLACE_MM, X, Z};
+use super::{Cycle, FIXED, LatheCycle, Pockets, RoughCycle, SAME_PLACE_MM, X, Z};
 use crate::arc::{self, Ends, Slack};
 use crate::arc_words::report_fault;
 use crate::code::Motion;
-use crate::control::{Control, Run};
+use crate::control::{Control, Effects, HeldBlock, Run};
 use crate::execute::Interpreter;
 use crate::facts::Facts;
 use crate::jump::Transfer;
 use crate::label::Label;
 use crate::places::POSITION_MAX_MM;
-use crate::report::{Diagnostics, Report};
+use crate::report::Report;
 use crate::vector::Vector;
 use gwatt_machine::units::MM_PER_INCH;
 use gwatt_machine::{ALL_AXES, AxisKind, AxisSet};
-use gwatt_motion::{MoveKind, Step};
-use gwatt_syntax::Block;
+use gwatt_motion::MoveKind;
 use gwatt_syntax::source::Span;
 
 impl Control<'_> {
@@ -77,7 +76,7 @@ impl Control<'_> {
                 let message = "the depth of cut I must be above 0, the retraction R not below it";
                 return fault(message, span, run);
             }
-            Cycle::Rough {
+            Cycle::Rough(RoughCycle {
                 facing: number >= 720,
                 pockets: match number % 10 {
                     0 => Pockets::Cut,
@@ -88,7 +87,7 @@ impl Control<'_> {
                 shift: [shift_z, shift_x],
                 depth,
                 retract,
-            }
+            })
         };
         if lengths.into_iter().any(|length| length.abs() > 1e6) {
             return fault("a length beyond reason", span, run);
@@ -136,26 +135,23 @@ fn fault(message: &str, span: Span, run: &mut Run<'_, '_>) {
 
 impl Interpreter<'_> {
     /// Makes the moves of the cycle.
-    #[allow(clippy::too_many_arguments, reason = "a block with all that it has")]
     pub(crate) fn run_lathe_cycle(
         &mut self,
         cycle: &LatheCycle,
         reader: Reader,
-        line: u64,
-        text: &[u8],
-        block: &Block,
-        steps: &mut Vec<Step>,
-        diagnostics: &mut Diagnostics,
+        held: HeldBlock<'_>,
+        effects: &mut Effects<'_>,
     ) {
-        let errors = diagnostics.errors;
+        let HeldBlock { line, text, block } = held;
+        let errors = effects.diagnostics.errors;
         let mut run = Run {
             line,
             block,
             words: &mut self.words,
             facts: &mut Facts::default(),
-            steps,
+            steps: effects.steps,
             report: Report {
-                diagnostics,
+                diagnostics: effects.diagnostics,
                 line,
                 text,
             },

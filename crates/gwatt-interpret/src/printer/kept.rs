@@ -6,7 +6,7 @@ use crate::modal::Feed;
 use crate::places::EXTRUDER;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_machine::{ALL_AXES, AxisSet, AxisValues};
-use gwatt_motion::{ActionKind, MoveKind};
+use gwatt_motion::ActionKind;
 use gwatt_syntax::source::Span;
 
 /// Most positions and states that a program may keep.
@@ -128,7 +128,7 @@ impl Control<'_> {
             end[axis] = saved.at[axis];
         }
         let feed_mm_s = feed_mm_s.map(|feed| feed * self.printer.feed_factor.max(1.0));
-        self.go_at(run, MoveKind::Feed, &end, unknown, None, feed_mm_s);
+        self.go_at(run, &end, unknown, feed_mm_s);
         self.position.unknown.0 |= saved.unknown.0 & axes.0;
     }
 

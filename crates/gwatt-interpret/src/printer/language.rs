@@ -10,8 +10,13 @@ use gwatt_syntax::Block;
 pub(crate) struct PrinterLanguage;
 
 impl Language for PrinterLanguage {
-    fn is_command(&self, block: &Block) -> bool {
+    fn is_command(&self, _control: &Control<'_>, block: &Block, _text: &[u8]) -> bool {
         is_command(block)
+    }
+
+    fn command(&self, control: &mut Control<'_>, run: &mut Run<'_, '_>) {
+        control.begun = true;
+        control.command_line(run);
     }
 
     /// What is not understood is a command: see [`Self::is_command`].

@@ -5,7 +5,7 @@ use super::line::Parameters;
 use crate::control::{Control, Run};
 use crate::places::EXTRUDER;
 use gwatt_machine::{AxisId, AxisSet};
-use gwatt_motion::{ActionKind, MoveKind};
+use gwatt_motion::ActionKind;
 use gwatt_syntax::source::Span;
 
 impl Control<'_> {
@@ -22,7 +22,7 @@ impl Control<'_> {
         run.facts.boundary = true;
         let all = self.machine.axis_set;
         let end = self.position.at;
-        self.go_at(run, MoveKind::Feed, &end, all, None, Some(f64::INFINITY));
+        self.go_at(run, &end, all, Some(f64::INFINITY));
         self.position.unknown.0 |= all.0;
         run.act(ActionKind::Other, 0.0);
     }
@@ -86,7 +86,7 @@ impl Control<'_> {
                 .unwrap_or(0.0);
         }
         run.act(ActionKind::Rest, 0.0);
-        self.go_at(run, MoveKind::Feed, &end, group, None, Some(feed_mm_s));
+        self.go_at(run, &end, group, Some(feed_mm_s));
         run.act(ActionKind::Rest, 0.0);
     }
 

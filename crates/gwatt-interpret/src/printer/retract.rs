@@ -4,7 +4,7 @@ use super::line::{Parameters, has, value};
 use crate::control::{Control, Run};
 use crate::places::EXTRUDER;
 use gwatt_machine::{AxisId, AxisSet};
-use gwatt_motion::{ActionKind, MoveKind};
+use gwatt_motion::ActionKind;
 use gwatt_syntax::source::Span;
 
 impl Control<'_> {
@@ -93,7 +93,7 @@ impl Control<'_> {
         end[axis] += by_mm;
         let speed_mm_s = speed_mm_s * self.printer.feed_factor.max(1.0);
         let none = AxisSet::default();
-        self.go_at(run, MoveKind::Feed, &end, none, None, Some(speed_mm_s));
+        self.go_at(run, &end, none, Some(speed_mm_s));
         self.position.shift(axis, by_mm);
     }
 }

@@ -10,6 +10,14 @@ use gwatt_syntax::Block;
 pub(crate) struct MacroLanguage;
 
 impl Language for MacroLanguage {
+    fn is_command(&self, control: &Control<'_>, _block: &Block, text: &[u8]) -> bool {
+        control.is_dollar(text)
+    }
+
+    fn command(&self, control: &mut Control<'_>, run: &mut Run<'_, '_>) {
+        control.dollar(run);
+    }
+
     fn read(
         &self,
         control: &mut Control<'_>,

@@ -8,17 +8,16 @@
 
 use super::words::{note_parameter, turning_needs};
 use super::{X, Z};
-use crate::control::{Control, Run};
+use crate::control::{Control, Effects, HeldBlock, Run};
 use crate::execute::Interpreter;
 use crate::facts::Facts;
 use crate::jump::Transfer;
 use crate::modal::Modal;
 use crate::position::Position;
-use crate::report::{Diagnostics, Report};
+use crate::report::Report;
 use crate::spindle_speed::SpindleMode;
 use crate::state_words::Switches;
 use gwatt_motion::{Move, MoveKind, Step};
-use gwatt_syntax::Block;
 use gwatt_syntax::source::Span;
 
 /// Divisions of G73, and lines of a contour.
@@ -204,18 +203,15 @@ impl Interpreter<'_> {
     }
 
     /// Makes the moves of a cycle whose contour has done `found`.
-    #[allow(clippy::too_many_arguments, reason = "a block with all that it has")]
     pub(crate) fn turn(
         &mut self,
         contour: &Contour,
         before: Box<Before>,
         found: Vec<Step>,
-        line: u64,
-        text: &[u8],
-        block: &Block,
-        steps: &mut Vec<Step>,
-        diagnostics: &mut Diagnostics,
+        held: HeldBlock<'_>,
+        effects: &mut Effects<'_>,
     ) {
+        let HeldBlock { line, text, block } = held;
         let control = &mut self.control;
         control.turning.reads_rough = false;
         let from = before.position.at;
@@ -236,9 +232,9 @@ impl Interpreter<'_> {
             block,
             words: &mut self.words,
             facts: &mut Facts::default(),
-            steps,
+            steps: effects.steps,
             report: Report {
-                diagnostics,
+                diagnostics: effects.diagnostics,
                 line,
                 text,
             },

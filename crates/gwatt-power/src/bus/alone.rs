@@ -48,11 +48,10 @@ impl SpindleBus<'_> {
         Some(place)
     }
 
-    /// Writes a row of the spindle alone.
+    /// Writes a row of the spindle alone: in this line, at the place of this move.
     pub(super) fn row(
         &mut self,
-        line: u64,
-        next: Option<&Move>,
+        (line, next): (u64, Option<&Move>),
         mut demand: Demand,
         span: SpindleSpan,
         duration_s: f64,
@@ -153,7 +152,7 @@ impl SpindleBus<'_> {
         }
         if duration_s > 0.0 {
             let demand = self.alone(Some(mv), extremes);
-            self.row(mv.line, Some(mv), demand, span, duration_s, sink);
+            self.row((mv.line, Some(mv)), demand, span, duration_s, sink);
         }
     }
 }

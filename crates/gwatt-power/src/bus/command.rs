@@ -164,7 +164,13 @@ impl SpindleBus<'_> {
             demand = self.alone(next, slower.henceforth(&self.motor));
         }
         if !self.model.fits(&demand) {
-            self.row(line, next, demand, SpindleSpan::steady(0.0, 0.0), 0.0, sink);
+            self.row(
+                (line, next),
+                demand,
+                SpindleSpan::steady(0.0, 0.0),
+                0.0,
+                sink,
+            );
         }
     }
 }

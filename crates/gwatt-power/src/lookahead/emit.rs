@@ -87,8 +87,7 @@ impl Ahead {
                 own.bound(
                     [before, next],
                     unwaited,
-                    machine,
-                    model,
+                    (machine, model),
                     observer,
                     overrides,
                 );
@@ -205,8 +204,7 @@ impl Open {
         &mut self,
         adjacent: [Option<&Self>; 2],
         unwaited: &mut Option<Extremes>,
-        machine: &Machine,
-        model: &PowerModel,
+        (machine, model): (&Machine, &PowerModel),
         observer: &mut Observer,
         largest: Overrides,
     ) {
@@ -216,7 +214,7 @@ impl Open {
         if let Some(unwaited) = unwaited {
             window[0] = unwaited.part();
         }
-        observer.blended(machine, model, &self.mv, &window, &mut kept, largest);
+        observer.blended((machine, model), &self.mv, &window, &mut kept, largest);
         let mut demand = model.robust_over(&self.mv, &window, self.want);
         let covered = Extremes::of(&window);
         // Chords of a small arc may ask for more than the axes' limits.

@@ -41,6 +41,14 @@ use surges::Surges;
 
 pub use open::{Role, joint, role};
 
+/// A move that is added, with the text of its line and what is wanted of it.
+#[derive(Clone, Copy)]
+pub struct Arrival<'a> {
+    pub mv: &'a Move,
+    pub text: &'a [u8],
+    pub want: Want,
+}
+
 /// The moves that are planned together.
 #[derive(Debug)]
 pub(super) struct Ahead {
@@ -161,10 +169,9 @@ impl Ahead {
         machine: &Machine,
         model: &PowerModel,
         observer: &mut Observer,
-        mv: &Move,
-        text: &[u8],
-        want: Want,
+        arrival: Arrival<'_>,
     ) -> bool {
+        let Arrival { mv, text, want } = arrival;
         if self.glide(model, observer, mv, text, want) {
             return true;
         }
@@ -214,17 +221,15 @@ impl Ahead {
     }
 
     /// Adds any other move with what is known of it by itself.
-    #[allow(clippy::too_many_arguments, reason = "what is known of a move")]
     pub fn push_other(
         &mut self,
         machine: &Machine,
         model: &PowerModel,
         observer: &mut Observer,
-        mv: &Move,
-        text: &[u8],
+        arrival: Arrival<'_>,
         assessment: Assessment,
-        want: Want,
     ) {
+        let Arrival { mv, text, want } = arrival;
         self.catch_up(machine);
         if role(machine, mv) == Role::Nothing {
             if mv.kind == MoveKind::Rapid {

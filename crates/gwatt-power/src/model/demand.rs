@@ -1,6 +1,7 @@
 //! What moves ask of the converters.
 
 use super::{ConverterPower, FIT_TOLERANCE, PowerModel};
+use crate::arc_circle::Circle;
 use crate::axis::AxisPower;
 use crate::demand::{Demand, Totals, Want};
 use crate::spindle_share::SpindleShare;
@@ -67,7 +68,10 @@ impl PowerModel {
             Trajectory::Path(profile) => {
                 let idle_w = converter.idle_w(mv, &self.axes, active);
                 match &mv.arc {
-                    Some(arc) => arc::totals(self, converter, mv, arc, profile, idle_w, want),
+                    Some(arc) => {
+                        let circle = Circle::new(self, converter, mv, arc, idle_w);
+                        arc::totals(&circle, profile, want)
+                    }
                     None => straight::totals(self, converter, mv, profile, idle_w, want),
                 }
             }

@@ -7,25 +7,29 @@ use crate::demand::Demand;
 use crate::duty_cycle::Buffered;
 use crate::robust::Extremes;
 use gwatt_motion::{Move, MoveKind};
-use gwatt_plan::{PathFigures, blended_bound, path_bound, path_figures};
+use gwatt_plan::{PathFigures, SpeedBound, blended_bound, path_bound, path_figures};
 
 impl Assessor<'_> {
-    /// Lets a move wait for its successor; the one that waited is passed on.
+    /// The largest speeds that blending may carry through a move.
+    pub(crate) fn blending_bound(&self, mv: &Move, figures: Option<&PathFigures>) -> SpeedBound {
+        match figures {
+            Some(path) if mv.arc.is_none() && !mv.stray.is_far() => {
+                path_bound(self.machine, mv, path.speed_limit_mm_s)
+            }
+            _ => blended_bound(self.machine, mv, self.largest),
+        }
+    }
+
+    /// Lets a move wait for its successor; the one that waited is passed on. `bound`: the
+    /// largest speeds that blending may carry through it; `rested`: it begins at rest.
     pub(crate) fn hold(
         &mut self,
         mv: &Move,
         text: &[u8],
         assessment: Assessment,
-        figures: Option<&PathFigures>,
-        rested: bool,
+        (bound, rested): (SpeedBound, bool),
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
-        let bound = match figures {
-            Some(path) if mv.arc.is_none() && !mv.stray.is_far() => {
-                path_bound(self.machine, mv, path.speed_limit_mm_s)
-            }
-            _ => blended_bound(self.machine, mv, self.largest),
-        };
         let fresh = match self.spare.take() {
             Some(mut fresh) => {
                 fresh.mv.clone_from(mv);
@@ -93,8 +97,7 @@ impl Assessor<'_> {
                 };
                 let window = [before.map_or(own, Pending::part), own, next];
                 self.observer.blended(
-                    self.machine,
-                    &self.model,
+                    (self.machine, &self.model),
                     &held.mv,
                     &window,
                     &mut Buffered::default(),

@@ -152,15 +152,8 @@ impl Tracer<'_> {
                 self.exact(&axes, end - start, idle_w, out);
             } else {
                 let mut totals = Totals::new(idle_w);
-                changing::interval(
-                    self.model,
-                    self.converter,
-                    mv,
-                    profiles,
-                    (start, end),
-                    Want::PEAKS,
-                    &mut totals,
-                );
+                let credit_regen = self.converter.credit_regen;
+                changing::interval(axes, credit_regen, Want::PEAKS, &mut totals);
                 self.push_totals(&totals, end - start, out);
             }
             start = end;

@@ -155,7 +155,7 @@ impl Tracer<'_> {
 mod tests {
     use super::*;
     use crate::PowerModel;
-    use gwatt_interpret::{Diagnostics, Facts, Interpreter, Reading, Step};
+    use gwatt_interpret::{Diagnostics, Effects, Facts, Interpreter, Reading, Step};
     use gwatt_machine::Machine;
     use gwatt_plan::{Overrides, Trajectory, plan};
     use gwatt_syntax::{Block, scan_line};
@@ -182,7 +182,12 @@ mod tests {
             let (mut steps, text) = (Vec::new(), text.as_bytes());
             let (mut facts, mut found) = (Facts::default(), Diagnostics::default());
             scan_line(text, line == 0, &mut block);
-            interpreter.execute(1, text, &mut block, &mut steps, &mut facts, &mut found);
+            interpreter.execute(
+                1,
+                text,
+                &mut block,
+                Effects::new(&mut steps, &mut facts, &mut found),
+            );
             all.extend(steps.into_iter().filter_map(|step| match step {
                 Step::Move(mv) => Some(mv),
                 Step::Action(_) => None,
