@@ -7,6 +7,7 @@ use std::slice;
 
 use super::advice::{Adviser, Circumstances};
 use super::conditions::{above_largest, conditions};
+use super::drive::{MoveSink, drive_end, drive_line};
 use super::executor::Executor;
 use super::summary::AT_LENGTH_MAX;
 use super::totals::Totals;
@@ -148,30 +149,17 @@ impl<'m, 'r> Analysis<'m, 'r> {
         text_of: impl Fn(usize, &Move) -> &'t [u8],
         circumstances: impl Fn() -> Circumstances,
     ) -> Result<(), Failure> {
-        let Self {
-            assessor,
-            tally,
-            adviser,
-            ..
-        } = self;
-        assessor.want = wanted(tally);
-        for (index, step) in steps.iter().enumerate() {
-            let mut sink = |mv: &Move, assessment: &Assessment, text: &[u8]| {
-                let help = || adviser.help(mv, assessment, &circumstances());
-                tally.take(mv, assessment, text, help);
-            };
-            match step {
-                Step::Move(mv) => assessor.push(mv, text_of(index, mv), &mut sink),
-                Step::Action(action) => assessor.act(action, &mut sink),
-            }
-            assessor.want = wanted(tally);
-        }
-        let moved = turns_knob || steps.iter().any(Step::moves_axes);
-        assessor.end_line(moved, &mut |mv, assessment, text| {
-            let help = || adviser.help(mv, assessment, &circumstances());
-            tally.take(mv, assessment, text, help);
-        });
-        tally.check()
+        let text_of = |index, step: &Step| match step {
+            Step::Move(mv) => text_of(index, mv),
+            Step::Action(_) => b"",
+        };
+        let mut advised = Advised {
+            tally: &mut self.tally,
+            adviser: &self.adviser,
+            circumstances,
+        };
+        drive_line(&mut self.assessor, steps, turns_knob, text_of, &mut advised);
+        self.tally.check()
     }
 
     /// The figures, after the last line.
@@ -184,10 +172,12 @@ impl<'m, 'r> Analysis<'m, 'r> {
             energy,
         } = self;
         let circumstances = Circumstances::of(front.interpreter());
-        assessor.finish(&mut |mv, assessment, text| {
-            let help = || adviser.help(mv, assessment, &circumstances);
-            tally.take(mv, assessment, text, help);
-        });
+        let mut advised = Advised {
+            tally: &mut tally,
+            adviser: &adviser,
+            circumstances: || circumstances,
+        };
+        drive_end(&mut assessor, &mut advised);
         tally.check()?;
         let lines = front.lines;
         let notes = front.finish()?;
@@ -197,6 +187,28 @@ impl<'m, 'r> Analysis<'m, 'r> {
         summary.lines = lines;
         summary.notes = notes;
         Ok(summary)
+    }
+}
+
+/// Counts moves, and says of those that do not fit what would help.
+struct Advised<'a, 'm, 'r, C> {
+    tally: &'a mut Totals<'m, 'r>,
+    adviser: &'a Adviser<'m>,
+    circumstances: C,
+}
+
+impl<C: Fn() -> Circumstances> MoveSink for Advised<'_, '_, '_, C> {
+    fn want(&self) -> Want {
+        let want = self.tally.want();
+        Want {
+            accel: want.energy,
+            ..want
+        }
+    }
+
+    fn take(&mut self, mv: &Move, judged: &Assessment, text: &[u8]) {
+        let help = || self.adviser.help(mv, judged, &(self.circumstances)());
+        self.tally.take(mv, judged, text, help);
     }
 }
 
@@ -248,15 +260,6 @@ pub fn moves<R: Read + Seek + Send>(
         }
     }
     front.finish()
-}
-
-/// What is wanted of the next move.
-fn wanted(tally: &Totals<'_, '_>) -> Want {
-    let want = tally.want();
-    Want {
-        accel: want.energy,
-        ..want
-    }
 }
 
 /// The planned certificate cannot be given for moves that are blended by rules

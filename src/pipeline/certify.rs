@@ -20,6 +20,7 @@ use pieces::{Found, Pieces};
 pub(super) use reasons::Reasons;
 
 use super::batch::Batch;
+use super::drive::{MoveSink, drive_end, drive_line_end, drive_step};
 use super::expected::{Expected, Originals, Stops, added_mode, added_stop, different};
 use super::totals::Totals;
 use super::watching::watching_at;
@@ -179,25 +180,11 @@ impl<'m, 'r> Certifier<'m, 'r> {
                 ..
             } = self;
             interpreter.execute(*line, text, block, Effects::new(steps, facts, diagnostics));
-            for step in steps.iter_mut() {
-                let mut text = text;
-                if let Step::Move(mv) = step
-                    && mv.line != *line
-                {
-                    text = interpreter.held_text(mv).unwrap_or(text);
-                }
-                verdict.take_step(step, text);
-                assessor.want = verdict.tally.want();
-                let mut sink = |mv: &Move, after: &Assessment, text: &[u8]| {
-                    verdict.judge(mv, after, text);
-                };
-                match &*step {
-                    Step::Move(mv) => assessor.push(mv, text, &mut sink),
-                    Step::Action(action) => assessor.act(action, &mut sink),
-                }
-            }
-            let moved = facts.turns_knob || steps.iter().any(Step::moves_axes);
-            assessor.end_line(moved, &mut |mv, after, text| verdict.judge(mv, after, text));
+            let text_of = |step: &Step| match step {
+                Step::Move(mv) if mv.line != *line => interpreter.held_text(mv).unwrap_or(text),
+                _ => text,
+            };
+            verdict.certify_line(assessor, steps, facts.turns_knob, text_of);
         }
     }
 
@@ -211,8 +198,8 @@ impl<'m, 'r> Certifier<'m, 'r> {
         self.stale = true;
         verdict.pass_spindle();
         verdict.done += 1;
-        assessor.want = verdict.tally.want();
-        let mut sink = |mv: &Move, after: &Assessment, text: &[u8]| verdict.judge(mv, after, text);
+        assessor.want = verdict.want();
+        let mut sink = |mv: &Move, after: &Assessment, text: &[u8]| verdict.take(mv, after, text);
         assessor.push(mv, text, &mut sink);
         assessor.end_line(mv.moves_axes(), &mut sink);
     }
@@ -222,9 +209,19 @@ impl<'m, 'r> Certifier<'m, 'r> {
         let Self {
             assessor, verdict, ..
         } = &mut self;
-        assessor.finish(&mut |mv, after, text| verdict.judge(mv, after, text));
+        drive_end(assessor, verdict);
         verdict.rate(assessor.ratings(), assessor.lower_ratings());
         self.verdict.finish(&self.diagnostics.list, self.line)
+    }
+}
+
+impl MoveSink for Verdict<'_, '_> {
+    fn want(&self) -> Want {
+        self.tally.want()
+    }
+
+    fn take(&mut self, mv: &Move, judged: &Assessment, text: &[u8]) {
+        self.judge(mv, judged, text);
     }
 }
 
@@ -257,9 +254,22 @@ impl<'m, 'r> Verdict<'m, 'r> {
         self.reasons.learn_files(names);
     }
 
-    /// What is wanted of the next move, and whether the rows could be written.
-    pub(super) fn want(&self) -> Want {
-        self.tally.want()
+    /// Compares the steps of a line of the written program with the original's, and judges
+    /// them; `text_of` gives the text that a step belongs to.
+    pub(super) fn certify_line<'t>(
+        &mut self,
+        assessor: &mut Assessor<'_>,
+        steps: &mut [Step],
+        turns_knob: bool,
+        text_of: impl Fn(&Step) -> &'t [u8],
+    ) {
+        for step in &mut *steps {
+            let text = text_of(step);
+            self.take_step(step, text);
+            drive_step(assessor, step, text, self);
+        }
+        let moved = turns_knob || steps.iter().any(Step::moves_axes);
+        drive_line_end(assessor, moved, self);
     }
 
     /// The error of the rows, if there was one.
@@ -387,7 +397,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
     }
 
     /// (a), (c) and (d): the written move is judged.
-    pub(super) fn judge(&mut self, mv: &Move, after: &Assessment, text: &[u8]) {
+    fn judge(&mut self, mv: &Move, after: &Assessment, text: &[u8]) {
         if mv.kind == MoveKind::Spindle {
             return self.judge_spindle(mv, after, text);
         }

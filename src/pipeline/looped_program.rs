@@ -10,6 +10,7 @@ mod original;
 use original::Original;
 
 use super::certify::{Certified, Reasons, Verdict};
+use super::drive::drive_end;
 use super::entry::Entry;
 use super::executor::{Executor, read_whole, too_large};
 use super::row::Detail;
@@ -20,10 +21,10 @@ use super::ways::turns_switches;
 use super::worst::{worst, worst_of};
 use super::writer::{Writer, Written};
 use super::{Failure, LimitOptions, Options, RowSink, Summary};
-use crate::interpret::{Move, Step};
+use crate::interpret::Step;
 use crate::limit::{Depths, Limiter};
 use crate::machine::{Machine, PathMode};
-use crate::power::{Assessment, Lower, PowerModel};
+use crate::power::{Lower, PowerModel};
 use crate::rewrite::{BlockView, Comment, Mark, Rewriter};
 use crate::source::lines;
 
@@ -297,28 +298,17 @@ fn certify(
             };
             verdict.learn_files(line.files);
             let mut steps = std::mem::take(line.steps);
-            for step in &mut steps {
-                let text = match step {
-                    Step::Move(mv) => line.text_of(mv),
-                    Step::Action(_) => line.text,
-                };
-                verdict.take_step(step, text);
-                assessor.want = verdict.want();
-                let mut sink = |mv: &Move, after: &Assessment, text: &[u8]| {
-                    verdict.judge(mv, after, text);
-                };
-                match &*step {
-                    Step::Move(mv) => assessor.push(mv, text, &mut sink),
-                    Step::Action(action) => assessor.act(action, &mut sink),
-                }
-            }
-            let moved = line.facts.turns_knob || steps.iter().any(Step::moves_axes);
+            let turns_knob = line.facts.turns_knob;
+            let text_of = |step: &Step| match step {
+                Step::Move(mv) => line.text_of(mv),
+                Step::Action(_) => line.text,
+            };
+            verdict.certify_line(&mut assessor, &mut steps, turns_knob, text_of);
             *line.steps = steps;
-            assessor.end_line(moved, &mut |mv, after, text| verdict.judge(mv, after, text));
         }
         verdict.check()?;
     }
-    assessor.finish(&mut |mv, after, text| verdict.judge(mv, after, text));
+    drive_end(&mut assessor, &mut verdict);
     verdict.rate(assessor.ratings(), assessor.lower_ratings());
     verdict.expect_nothing();
     let lines = written.lines;

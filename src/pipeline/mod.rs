@@ -10,6 +10,7 @@ mod conclusion;
 mod conditions;
 mod decision;
 mod describe;
+mod drive;
 mod drives;
 mod each_move;
 mod ends;

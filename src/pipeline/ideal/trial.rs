@@ -7,12 +7,13 @@ use crate::limit::{
     Change, Deeper, Depths, Limiter, Outcome, Paced, Paces, Permit, Place, Waiting,
 };
 use crate::machine::{AXES, Machine, PathMode};
+use crate::pipeline::drive::{MoveSink, drive_end, drive_line_end, drive_step};
 use crate::pipeline::entry::Entry;
 use crate::pipeline::executor::Executor;
 use crate::pipeline::totals::{Totals, whether_fits};
 use crate::pipeline::watching::watching;
 use crate::pipeline::{Failure, LimitOptions, Options};
-use crate::power::{Assessment, Assessor, Certificate, PowerModel};
+use crate::power::{Assessment, Assessor, Certificate, PowerModel, Want};
 
 /// Moves that are limited and judged in all rounds together.
 const EFFORT: usize = 200_000;
@@ -164,7 +165,6 @@ impl<'m> Trial<'m> {
         };
         let mut all = outcomes.iter();
         for event in &self.events {
-            assessor.want = verdict.tally.want();
             match event {
                 Event::Move(number) => {
                     let outcome = all.next();
@@ -172,23 +172,18 @@ impl<'m> Trial<'m> {
                         verdict
                             .places
                             .push((*number, outcome.is_some_and(is_split)));
-                        let mut sink = |mv: &Move, after: &Assessment, _: &[u8]| {
-                            verdict.take(mv, after);
-                        };
-                        assessor.push(&mv, b"", &mut sink);
+                        drive_step(&mut assessor, &Step::Move(mv), b"", &mut verdict);
                     }
                 }
                 Event::Other(action) => {
-                    let mut sink =
-                        |mv: &Move, after: &Assessment, _: &[u8]| verdict.take(mv, after);
-                    assessor.act(action, &mut sink);
+                    drive_step(&mut assessor, &Step::Action(*action), b"", &mut verdict);
                 }
                 Event::EndOfLine(moved) => {
-                    assessor.end_line(*moved, &mut |mv, after, _| verdict.take(mv, after));
+                    drive_line_end(&mut assessor, *moved, &mut verdict);
                 }
             }
         }
-        assessor.finish(&mut |mv, after, _| verdict.take(mv, after));
+        drive_end(&mut assessor, &mut verdict);
         verdict
             .tally
             .rate(assessor.ratings(), assessor.lower_ratings());
@@ -246,9 +241,13 @@ struct Verdict<'t, 'm> {
     deepen_next: bool,
 }
 
-impl Verdict<'_, '_> {
+impl MoveSink for Verdict<'_, '_> {
+    fn want(&self) -> Want {
+        self.tally.want()
+    }
+
     /// As the certifier does it.
-    fn take(&mut self, mv: &Move, after: &Assessment) {
+    fn take(&mut self, mv: &Move, after: &Assessment, _text: &[u8]) {
         self.tally.add(mv, after, b"");
         if mv.kind == MoveKind::Spindle {
             return;

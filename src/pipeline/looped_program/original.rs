@@ -7,6 +7,7 @@ use std::io::Cursor;
 use crate::interpret::{Move, MoveKind, Step};
 use crate::machine::Machine;
 use crate::pipeline::describe::{describe, row};
+use crate::pipeline::drive::{MoveSink, drive_end, drive_line};
 use crate::pipeline::executor::Executor;
 use crate::pipeline::expected::{Expected, ExpectedMove};
 use crate::pipeline::line_key::LineKey;
@@ -15,7 +16,7 @@ use crate::pipeline::spindle_rows::SpindleRows;
 use crate::pipeline::table::Table;
 use crate::pipeline::totals::whether_fits;
 use crate::pipeline::{Failure, Options};
-use crate::power::{Assessment, Assessor, PowerModel};
+use crate::power::{Assessment, Assessor, PowerModel, Want};
 
 /// Steps of the original that are held at a time while they are compared.
 const STEPS: usize = 4096;
@@ -37,8 +38,9 @@ pub(super) struct Original<'m, 'p> {
 }
 
 /// Steps that are not judged yet, in order.
-#[derive(Default)]
 struct Waiting {
+    /// What is wanted of each move.
+    want: Want,
     steps: VecDeque<Held>,
     /// Steps from the front on that are actions or judged.
     judged: usize,
@@ -55,8 +57,12 @@ struct Held {
     assessment: Option<Assessment>,
 }
 
-impl Waiting {
-    fn judge(&mut self, mv: &Move, assessment: &Assessment) {
+impl MoveSink for Waiting {
+    fn want(&self) -> Want {
+        self.want
+    }
+
+    fn take(&mut self, mv: &Move, assessment: &Assessment, _text: &[u8]) {
         if !self.spindle.judge(mv, assessment) {
             return;
         }
@@ -67,7 +73,9 @@ impl Waiting {
         }
         self.pass_actions();
     }
+}
 
+impl Waiting {
     fn pass_actions(&mut self) {
         while matches!(self.steps.get(self.judged), Some(held) if matches!(held.step, Step::Action(_)))
         {
@@ -75,8 +83,8 @@ impl Waiting {
         }
     }
 
-    /// Takes the next step of a line all of whose steps are judged.
-    fn take(&mut self) -> Option<Held> {
+    /// The next step of a line all of whose steps are judged.
+    fn next(&mut self) -> Option<Held> {
         self.pass_actions();
         let front = self.steps.front()?.ordinal;
         if self
@@ -101,9 +109,8 @@ impl<'m, 'p> Original<'m, 'p> {
     ) -> Self {
         let model = PowerModel::new(machine);
         let want = detail.want(whether_fits(machine, &model));
-        let mut assessor =
+        let assessor =
             Assessor::new(machine, options.certificate, want).starting(options.reading.start);
-        assessor.want = want;
         Self {
             machine,
             front: Executor::new(Cursor::new(program), machine, options),
@@ -111,7 +118,12 @@ impl<'m, 'p> Original<'m, 'p> {
             model,
             table,
             detail,
-            waiting: Waiting::default(),
+            waiting: Waiting {
+                want,
+                steps: VecDeque::new(),
+                judged: 0,
+                spindle: SpindleRows::default(),
+            },
             ordinal: 0,
             files: Vec::new(),
             start_s: 0.0,
@@ -148,23 +160,15 @@ impl<'m, 'p> Original<'m, 'p> {
                         feed,
                         assessment: None,
                     });
-                    let mut sink = |mv: &Move, assessment: &Assessment, _: &[u8]| {
-                        waiting.judge(mv, assessment);
-                    };
-                    match step {
-                        Step::Move(mv) => assessor.push(mv, line.text, &mut sink),
-                        Step::Action(action) => assessor.act(action, &mut sink),
-                    }
                 }
-                let moved = line.facts.turns_knob || line.steps.iter().any(Step::moves_axes);
-                assessor.end_line(moved, &mut |mv, assessment, _| {
-                    waiting.judge(mv, assessment);
-                });
+                let turns_knob = line.facts.turns_knob;
+                let text_of = |_, _: &Step| line.text;
+                drive_line(assessor, line.steps, turns_knob, text_of, waiting);
             } else {
-                assessor.finish(&mut |mv, assessment, _| waiting.judge(mv, assessment));
+                drive_end(assessor, waiting);
                 more = false;
             }
-            while let Some(held) = self.waiting.take() {
+            while let Some(held) = self.waiting.next() {
                 if let (Step::Move(_), Some(_)) = (&held.step, held.assessment) {
                     self.expect_spindle(expected);
                     self.waiting.spindle.write();

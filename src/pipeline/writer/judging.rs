@@ -4,9 +4,34 @@ use std::io::{Read, Seek, Write};
 
 use super::Writer;
 use crate::interpret::{Move, Step};
+use crate::pipeline::drive::{MoveSink, drive_end, drive_line_end, drive_step};
 use crate::pipeline::entry::Entry;
 use crate::pipeline::judge::{Flight, Judge, Queue};
-use crate::power::Assessment;
+use crate::pipeline::row::Detail;
+use crate::pipeline::spindle_rows::SpindleRows;
+use crate::pipeline::totals::Totals;
+use crate::power::{Assessment, Want};
+
+/// Counts judged moves, and hands them to the limiter.
+struct Counted<'a, 'm> {
+    tally: &'a mut Totals<'m, 'm>,
+    spindle: &'a mut SpindleRows,
+    detail: Detail,
+    judge: Judge<'a, 'm>,
+}
+
+impl MoveSink for Counted<'_, '_> {
+    fn want(&self) -> Want {
+        self.detail.want(self.tally.want())
+    }
+
+    fn take(&mut self, mv: &Move, judged: &Assessment, text: &[u8]) {
+        self.tally.add(mv, judged, text);
+        if self.spindle.judge(mv, judged) {
+            self.judge.take(mv, judged);
+        }
+    }
+}
 
 impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
     /// Lets a block wait, and judges its moves.
@@ -31,7 +56,6 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
         // After the last step the line ends.
         let steps = entry.steps.iter().map(Some).chain([None]);
         for (index, step) in steps.enumerate() {
-            assessor.want = self.detail.want(tally.want());
             if let Some(Step::Move(mv)) = step {
                 self.mode = mv.path_mode;
                 flights.push_back(Flight {
@@ -40,27 +64,31 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
                     assessment: None,
                 });
             }
-            let mut judge = Judge {
-                limiter,
-                queue: Queue {
-                    machine: self.machine,
-                    entries,
-                    first: *first,
-                    flights,
+            let mut counted = Counted {
+                tally,
+                spindle,
+                detail: self.detail,
+                judge: Judge {
+                    limiter,
+                    queue: Queue {
+                        machine: self.machine,
+                        entries,
+                        first: *first,
+                        flights,
+                    },
+                    judged,
+                    outcomes,
                 },
-                judged,
-                outcomes,
-            };
-            let mut sink = |mv: &Move, assessment: &Assessment, text: &[u8]| {
-                tally.add(mv, assessment, text);
-                if spindle.judge(mv, assessment) {
-                    judge.take(mv, assessment);
-                }
             };
             match step {
-                Some(Step::Move(mv)) => assessor.push(mv, entry.text_of(mv), &mut sink),
-                Some(Step::Action(action)) => assessor.act(action, &mut sink),
-                None => assessor.end_line(moved, &mut sink),
+                Some(step) => {
+                    let text = match step {
+                        Step::Move(mv) => entry.text_of(mv),
+                        Step::Action(_) => b"",
+                    };
+                    drive_step(assessor, step, text, &mut counted);
+                }
+                None => drive_line_end(assessor, moved, &mut counted),
             }
         }
     }
@@ -122,24 +150,24 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             spindle,
             ..
         } = self;
-        let mut judge = Judge {
-            limiter,
-            queue: Queue {
-                machine: self.machine,
-                entries,
-                first: *first,
-                flights,
+        let mut counted = Counted {
+            tally,
+            spindle,
+            detail: self.detail,
+            judge: Judge {
+                limiter,
+                queue: Queue {
+                    machine: self.machine,
+                    entries,
+                    first: *first,
+                    flights,
+                },
+                judged,
+                outcomes,
             },
-            judged,
-            outcomes,
         };
-        assessor.finish(&mut |mv, assessment, text| {
-            tally.add(mv, assessment, text);
-            if spindle.judge(mv, assessment) {
-                judge.take(mv, assessment);
-            }
-        });
-        judge.finish();
+        drive_end(assessor, &mut counted);
+        counted.judge.finish();
         self.decide();
     }
 
