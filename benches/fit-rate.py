@@ -56,7 +56,7 @@ def machine(profile, peak_w):
         text += "[offsets]\n" + LATHE_OFFSETS
     for name, (rapid, accel, mass, friction) in axes.items():
         text += f"[axes.{name}]\nrapid_mm_min = {rapid}\naccel_mm_s2 = {accel}\nmass_kg = {mass}\ncoulomb_n = {friction}\n"
-        if profile in MILLS | LATHES:
+        if profile in MILLS | LATHES | KEPT:
             text += "reference_mm = 0\n"
         if profile in PRINTERS and name != "E":
             text += f"reference_mm = 0\nreference_mm_min = {min(rapid, 3000)}\n"

@@ -11,6 +11,7 @@ mod compare;
 mod pieces;
 mod reasons;
 mod spindle;
+mod stands;
 
 use std::collections::VecDeque;
 
@@ -18,6 +19,7 @@ pub(super) use compare::DOES_NOT_FIT;
 use compare::compare;
 use pieces::{Found, Pieces};
 pub(super) use reasons::Reasons;
+use stands::Stands;
 
 use super::batch::Batch;
 use super::drive::{MoveSink, drive_end, drive_line_end, drive_step};
@@ -74,6 +76,9 @@ pub(super) struct Verdict<'m, 'r> {
     deepen_next: bool,
     /// The dwells that may be put in.
     stops: Stops,
+    machine: &'m Machine,
+    /// Where the axes stand in the written program.
+    stands: Stands,
     /// Rows of the spindle in the written program that no row of the original
     /// has met yet.
     /// Each with its start, s.
@@ -235,6 +240,8 @@ impl<'m, 'r> Verdict<'m, 'r> {
             model: PowerModel::new(machine),
             tally: Totals::new(machine, options, rows),
             stops: Stops::of(machine),
+            machine,
+            stands: Stands::new(),
             originals: Originals::default(),
             pieces: Pieces::default(),
             done: 0,
@@ -360,7 +367,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
         }
         let original = self.originals.get(self.done).map(|original| &*original);
         if matches!(step, Step::Move(mv) if added_stop(mv, original, &self.stops)) {
-            return;
+            return self.stands.stop();
         }
         if matches!(step, Step::Action(action) if added_mode(action, original)) {
             return;
@@ -377,7 +384,11 @@ impl<'m, 'r> Verdict<'m, 'r> {
                 Some(Found::Wrong(what)) => Some(what),
                 Some(Found::Right) | None => None,
             },
-            (Step::Move(mv), Some(Expected::Move(original))) => different(original, mv),
+            (Step::Move(mv), Some(Expected::Move(original))) => {
+                let stands = self.stands.take(self.machine, original, mv);
+                different(original, mv)
+                    .or((!stands).then_some("no stop before it, where a rapid stopped,"))
+            }
             (Step::Action(action), Some(Expected::Action(original)))
                 if action.kind == original.kind && same(action.value, original.value) =>
             {

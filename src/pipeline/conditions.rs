@@ -118,6 +118,32 @@ fn ways_conditions(paths: &[Options]) -> impl Iterator<Item = String> {
     [Some(blocks.to_owned()), probes].into_iter().flatten()
 }
 
+/// Where places come from that the program does not give.
+fn place_conditions(machine: &Machine, options: &Options) -> impl Iterator<Item = String> {
+    let reading = &options.reading;
+    let axes = || machine.axes.iter().flatten();
+    let sources = [
+        (
+            machine.offsets.iter().any(Option::is_some),
+            "work offsets are those under [offsets] of the machine file",
+        ),
+        (
+            axes().any(|axis| axis.reference_mm.is_some()),
+            "the reference point is reference_mm of the machine file",
+        ),
+        (
+            reading.tools.is_some(),
+            "lengths and radii of tools are those of the tool table",
+        ),
+        (
+            reading.parameters.is_some() || !reading.given.is_empty(),
+            "the control keeps the parameters that were given",
+        ),
+    ];
+    let given = sources.into_iter().filter(|(given, _)| *given);
+    given.map(|(_, said)| said.to_owned())
+}
+
 /// Which outputs act on the motion.
 fn output_conditions(machine: &Machine) -> impl Iterator<Item = String> {
     let knobs = machine.controller.knobs.iter();
@@ -240,6 +266,7 @@ pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary
         }
         Start::At(_) => "start position as given".to_owned(),
     });
+    conditions.extend(place_conditions(machine, options));
     conditions.extend(ways_conditions(paths));
     if let Some(spindle) = &machine.spindle {
         conditions.push(spindle_condition(spindle).to_owned());

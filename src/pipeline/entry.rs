@@ -2,25 +2,16 @@
 
 use super::ends::Places;
 use super::executor::Line;
-use super::line_key::{IN_A_FILE, LineKey};
-use crate::interpret::{
-    Facts, FastPathState, FeedMode, KnobState, Motion, Move, MoveKind, Step, TOOL_CHANGE_UNKNOWN,
+use super::line_key::LineKey;
+use super::untouched::{
+    MACHINE_COORDINATES, NO_FEED, PER_REVOLUTION, REFERENCE, UNKNOWN_FEED, WITHOUT_STOP, help,
 };
+use crate::interpret::{Facts, FastPathState, FeedMode, KnobState, Motion, Move, MoveKind, Step};
 use crate::limit::{Change, Outcome, Permit, Waiting};
-use crate::machine::{AxisId, Lathe, Machine, PathMode, RapidJoint, RapidPath};
-use crate::motion::{CYCLE, TURNING_CYCLE};
+use crate::machine::{AxisId, Machine, PathMode, RapidJoint, RapidPath};
 use crate::power::Assessment;
 use crate::rewrite::{Comment, Mark, has_at_most};
 use crate::syntax::Block;
-
-/// Why a rapid is not written as a feed, where the program can help.
-const PER_REVOLUTION: &str = "the feed in force is per revolution";
-const UNKNOWN_FEED: &str = "no F is in force, and the one that the control takes then is not known";
-const NO_FEED: &str = "no F is in force, and one of the blocks that count on none cannot have its \
-     own";
-const REFERENCE: &str = "it moves to a reference point";
-const MACHINE_COORDINATES: &str = "G53 is for rapids";
-const WITHOUT_STOP: &str = "without its stop the corner would be rounded";
 
 /// A block that waits until all its moves are decided.
 pub(super) struct Entry {
@@ -229,23 +220,10 @@ impl Entry {
                 PER_REVOLUTION,
             ),
         ];
-        let family = machine.controller.language.family.facts();
-        let rapid = [
-            (
-                facts.machine_coordinates && !family.feeds_in_machine_coordinates,
-                MACHINE_COORDINATES,
-            ),
-            (facts.reference, REFERENCE),
-            (!stays, WITHOUT_STOP),
-            (
-                // The blocks that follow would become lines too.
-                facts.no_motion_word && machine.path.rapid == RapidPath::Independent,
-                "no motion word is in force that could be put back",
-            ),
-        ];
+        let rapid = self.stays_rapid(machine, stays);
         let reasons = [edit, first_reason(&feed), first_reason(&rapid)];
         let reason_text = reasons.into_iter().flatten().next().unwrap_or("");
-        let reason_help = self.help(machine, reason_text);
+        let reason_help = help(machine, &self.block, &self.facts, reason_text);
         let feed_accel_mm_s2 = self
             .knobs
             .as_ref()
@@ -277,50 +255,6 @@ impl Entry {
             feed_before: self.feed_before(),
             positions: self.positions(machine, mv),
             feed_accel_mm_s2,
-        }
-    }
-
-    /// What helps where something may not be changed for this reason.
-    fn help(&self, machine: &Machine, reason: &str) -> &'static str {
-        let language = &machine.controller.language;
-        match reason {
-            CYCLE => {
-                "--allow expand writes canned cycles out as single blocks; where it taps, more \
-                 power or slower axes are needed"
-            }
-            TURNING_CYCLE if self.facts.cycle => {
-                "--allow expand writes turning cycles out as single blocks, where they cut no thread"
-            }
-            REFERENCE | MACHINE_COORDINATES => {
-                "the way is gone by a feed before it where the places are known: reference_mm of \
-                 the axes, the work offset ([offsets] or --parameters) and the tool's length \
-                 (--tool-table); or give the speed of the return, reference_mm_min"
-            }
-            IN_A_FILE => {
-                "--with-subprograms writes the files of subprograms too, certified together with \
-                 all programs that are given"
-            }
-            UNKNOWN_FEED if !language.family.facts().power_on_feed_data.is_empty() => {
-                "write F before it; or give the F of power-on, which no written one exceeds \
-                 (setting data 42110): power_on_feed_mm_min under [language] of the machine file"
-            }
-            UNKNOWN_FEED => {
-                "write F before it; or give the F of power-on, which no written one exceeds: \
-                 power_on_feed_mm_min under [language] of the machine file"
-            }
-            PER_REVOLUTION if language.dialect.lathe == Some(Lathe::A) => {
-                "program G98 (feed per minute) and F in it before the rapid"
-            }
-            PER_REVOLUTION => "program G94 (feed per minute) and F in it before the rapid",
-            TOOL_CHANGE_UNKNOWN => {
-                "the machine's builder decides which: tool_change = \"before-motion\" or \
-                 \"after-motion\" under [language] of the machine file"
-            }
-            WITHOUT_STOP if language.g61 == PathMode::ExactStop => {
-                "program an exact stop (G61) before the block in front of it, or write the \
-                 move as a feed by hand"
-            }
-            _ => "",
         }
     }
 
@@ -399,6 +333,38 @@ impl Entry {
                 machine.controller.language.family,
                 word.number.of(&self.text),
             )
+        })
+    }
+
+    /// What forbids G1 for G0; `stays`: it ends at rest as a feed too.
+    fn stays_rapid(&self, machine: &Machine, stays: bool) -> [(bool, &'static str); 5] {
+        let facts = &self.facts;
+        let family = machine.controller.language.family.facts();
+        [
+            (
+                facts.machine_coordinates && !family.feeds_in_machine_coordinates,
+                MACHINE_COORDINATES,
+            ),
+            (facts.reference, REFERENCE),
+            (
+                self.works_out_motion(),
+                "its motion word is worked out by the program",
+            ),
+            (!stays, WITHOUT_STOP),
+            (
+                // The blocks that follow would become lines too.
+                facts.no_motion_word && machine.path.rapid == RapidPath::Independent,
+                "no motion word is in force that could be put back",
+            ),
+        ]
+    }
+
+    /// Whether the number of its motion word is worked out.
+    fn works_out_motion(&self) -> bool {
+        let word = self.facts.motion_word;
+        word.is_some_and(|word| {
+            let plain = |byte: &u8| byte.is_ascii_digit() || b".+- \t".contains(byte);
+            !word.number.of(&self.text).iter().all(plain)
         })
     }
 

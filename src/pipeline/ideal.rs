@@ -39,14 +39,19 @@ pub fn ideal<R: Read + Seek>(
     let lost_s = after.duration_s - before.duration_s;
     let little = limited.certified && !is_worth(lost_s, after.duration_s);
     let many = before.moves > AT_LENGTH_MAX || before.unfit_count > UNFIT_MAX;
+    // Of blocks that may be skipped the times are those of the slowest way.
+    let ways = has_ways(options) || limited.may_skip;
     let by_rule = how.strategy == Strategy::Preset || how.law == Law::Patent;
-    if little || many || by_rule || has_ways(options) || !limited.pauses.is_empty() {
+    if little || many || by_rule || ways || !limited.pauses.is_empty() {
         return Ok(None);
     }
     let target = with_word(machine);
     input.rewind().map_err(Failure::Input)?;
-    let Some(trial) = Trial::read(input, &target, options)? else {
-        return Ok(None);
+    let trial = match Trial::read(input, &target, options) {
+        Ok(Some(trial)) => trial,
+        // A program with words of its own for what the ideal ones act on is not read then.
+        Ok(None) | Err(Failure::Refused { .. }) => return Ok(None),
+        Err(failure) => return Err(failure),
     };
     let asked = LimitOptions {
         strategy: Strategy::Optimal,

@@ -52,6 +52,7 @@ mod summary;
 mod table;
 mod totals;
 mod unmarked;
+mod untouched;
 mod watching;
 mod ways;
 mod looped_program;

@@ -1,5 +1,6 @@
 //! One block at a time: its edits, and the lines before it.
 
+mod label;
 mod pieces;
 mod tool_words;
 mod words;
@@ -8,6 +9,7 @@ use std::fmt::Write as _;
 
 pub use pieces::PieceWords;
 
+use label::Label;
 use tool_words::{tool_line, without, without_tool};
 
 use super::number::{Style, feed_again};
@@ -77,6 +79,9 @@ pub struct Rewriter<'m> {
     line_end: Vec<u8>,
     /// What lines that are inserted begin with, so that they are skipped with their block.
     skip: String,
+    /// The label of the block that is written, for the first line that is inserted before it:
+    /// whoever jumps to the block executes that line too.
+    label: Option<Label>,
     /// The last line that was written has an end.
     complete: bool,
     edits: Vec<Edit>,
@@ -110,6 +115,7 @@ impl<'m> Rewriter<'m> {
             turned: Turned::new(machine),
             line_end: b"\n".to_vec(),
             skip: String::new(),
+            label: None,
             complete: true,
             edits: Vec::new(),
             stop: machine.controller.language.shortest_dwell().0,
@@ -158,11 +164,11 @@ impl<'m> Rewriter<'m> {
         if looked_at {
             self.restore(view.before, view.knobs, out);
         }
-        if !facts.executed {
-            out.extend_from_slice(view.text);
-            return true;
-        }
         self.edits.clear();
+        if !facts.executed {
+            self.take_label_out();
+            return self.apply_edits(view.text, out);
+        }
         let tool_after = self.take_tool_words(view, out);
         if view.rapids || view.feeds {
             self.write_pieces(view, out);
@@ -189,13 +195,8 @@ impl<'m> Rewriter<'m> {
         self.motion_word(view);
         self.feed_word(view);
         self.mark_rapid(view);
-        let fine = if self.edits.is_empty() {
-            out.extend_from_slice(view.text);
-            true
-        } else {
-            self.edited_lines += 1;
-            apply(view.text, &mut self.edits, out)
-        };
+        self.take_label_out();
+        let fine = self.apply_edits(view.text, out);
         self.stopped = view.stops || view.rests || view.text.trim_ascii() == self.stop.as_bytes();
         if view.stops && !view.change.exact_stop {
             self.complete_line(out);
@@ -211,6 +212,23 @@ impl<'m> Rewriter<'m> {
             self.line_after(word.of(view.text), view, out);
         }
         fine
+    }
+
+    /// Writes the block itself.
+    fn apply_edits(&mut self, text: &[u8], out: &mut Vec<u8>) -> bool {
+        if self.edits.is_empty() {
+            out.extend_from_slice(text);
+            return true;
+        }
+        self.edited_lines += 1;
+        apply(text, &mut self.edits, out)
+    }
+
+    /// Takes the label out of its block where a line before that has it.
+    fn take_label_out(&mut self) {
+        if let Some(label) = self.label.take().filter(|label| label.is_taken) {
+            self.edits.push(Edit::replace(label.span, ""));
+        }
     }
 
     /// Takes the words that select and change the tool out of a block that is changed: they
@@ -327,6 +345,7 @@ impl<'m> Rewriter<'m> {
             1 => self.skip.push('/'),
             level => self.skip = format!("/{level}"),
         }
+        self.label = Label::of(view.text, view.block, self.machine);
         let written = self.write(view, out);
         // Where only F was not known before, all is as after the original's block.
         if known || !view.change.is_none() {
@@ -436,14 +455,19 @@ impl<'m> Rewriter<'m> {
     }
 
     fn insert_stop(&mut self, out: &mut Vec<u8>) {
-        out.extend_from_slice(self.skip.as_bytes());
-        out.extend_from_slice(self.stop.as_bytes());
-        out.extend_from_slice(&self.line_end);
-        self.edited_lines += 1;
+        let stop = std::mem::take(&mut self.stop);
+        self.insert_line(&stop, out);
+        self.stop = stop;
     }
 
     fn insert_line(&mut self, words: &str, out: &mut Vec<u8>) {
         out.extend_from_slice(self.skip.as_bytes());
+        if let Some(label) = &mut self.label
+            && !label.is_taken
+        {
+            label.is_taken = true;
+            out.extend_from_slice(&label.text);
+        }
         out.extend_from_slice(words.as_bytes());
         out.extend_from_slice(&self.line_end);
         self.edited_lines += 1;

@@ -39,17 +39,17 @@ fn tools_stops_and_ends() {
     assert_snapshot!(limited(&shop("fanuc", 520.0), program), @r"
     G21 G90 G54
     G4 P1
-    G9 G1 X400 Y300 T3 M8 F22651
+    G9 G1 X400 Y300 T3 M8 F22651.
     G0
-    G9 G1 X0 Y50 Z40 F23555 (LOOK)
+    G9 G1 X0 Y50 Z40 F23555. (LOOK)
     G0
     M0
-    G9 G1 X300 F28799
+    G9 G1 X300 F28799.
     G0
     M1
     G1 Z30 F400
     G4 P1
-    G9 G1 X0 Y300 M9 F21868
+    G9 G1 X0 Y300 M9 F21868.
     G0 F400
     M30
     ");
@@ -91,11 +91,11 @@ fn with_blocks_that_may_be_skipped() {
     G21 G90
     G0 X10
     /G4 P1
-    /G9 G1 X400 Y300 F22469
+    /G9 G1 X400 Y300 F22469.
     /G0
     /M1
     G4 P1
-    G9 G1 X20 Y0 F22278
+    G9 G1 X20 Y0 F22278.
     G0
     M30
     ");
@@ -181,7 +181,7 @@ fn reference_point_of_sinumerik() {
     );
     limited(&shop, &tool.replace("G74", "D0\nG74"));
     let fixed = program.replace("G74", "G75");
-    refused(&shop, &fixed, "where it leads is not known");
+    refused(&shop, &fixed, "where it leads only the control knows");
     let none = program.replace("G0 X10\nG1 X20 Y10 F500\n", "");
     refused(
         &shop,
@@ -265,11 +265,11 @@ fn tools_that_change_when_the_machine_file_says() {
     G1 Z30 F400
     T2 M6
     G4 P1
-    G9 G1 X400 Y290 F22889
+    G9 G1 X400 Y290 F22889.
     G0 F400
     T3 M6
     G4 P1
-    G9 G1 X300. Y300. F28296
+    G9 G1 X300. Y300. F28296.
     G91 G28 X0 Y0
     G0 F400
     M30
@@ -278,10 +278,10 @@ fn tools_that_change_when_the_machine_file_says() {
     G21 G90 G54
     G1 Z30 F400
     G4 P1
-    G9 G1 X400 Y290 F22889
+    G9 G1 X400 Y290 F22889.
     G0 F400
     T2 M6
-    G9 G1 X300. Y300. F28296
+    G9 G1 X300. Y300. F28296.
     G0 F400
     G91 G28 X0 Y0 T3 M6
     M30

@@ -74,7 +74,7 @@ fn the_way_to_a_hole_needs_no_permission() {
     assert_snapshot!(text, @r"
     G21 G90 G54
     G0 X0. Y0. Z50.
-    G9 G1 X400. Y300. F26966
+    G9 G1 X400. Y300. F26966.
     G0
     N10 G98 G81 X400. Y300. Z-12. R40. F200.
     G0 X410.
@@ -228,9 +228,9 @@ fn the_rapids_of_a_tap_are_written_out() {
     same_moves(&fanuc, &text);
     assert_snapshot!(text, @r"
     G4 P1
-    G9 G21 G90 G54 G1 Z50. F13714
-    G9 G1 X400. Y300. F10786
-    G9 G1 Z2. F13714
+    G9 G21 G90 G54 G1 Z50. F13714.
+    G9 G1 X400. Y300. F10786.
+    G9 G1 Z2. F13714.
     G0
     G99 G84 X400. Y300. Z-12. R2. F1000.
     G4 P1
@@ -258,9 +258,9 @@ fn the_rapids_of_a_tap_are_written_out() {
     same_moves(&fanuc, &text);
     assert_snapshot!(text, @r"
     G4 P1
-    G9 G21 G90 G54 G19 G1 X50. Z10. F13158
-    G9 G1 Y300. Z90. F12914
-    G9 G1 X2. F13714
+    G9 G21 G90 G54 G19 G1 X50. Z10. F13158.
+    G9 G1 Y300. Z90. F12914.
+    G9 G1 X2. F13714.
     G0
     G99 G84 Y300. Z90. X-12. R2. F1000.
     G4 P1

@@ -95,8 +95,8 @@ fn rapids_between_two_words() {
     assert_eq!(code, 0, "{errors}");
     assert_eq!(
         text,
-        "G9 G1 X1000. Y800. F26404\nG1 X5. F500\nX8.\nG0 X0. Y0.\nG1 X3. F400\nG61 X2.\n\
-         G1 X1000. Y802. F26364\nG64\nG0 F400\nM30\n"
+        "G9 G1 X1000. Y800. F26404.\nG1 X5. F500\nX8.\nG0 X0. Y0.\nG1 X3. F400\nG61 X2.\n\
+         G1 X1000. Y802. F26364.\nG64\nG0 F400\nM30\n"
     );
     // Each run of the block before ends at a rapid; the feed of a cycle does not stop, its way
     // back does.

@@ -65,7 +65,7 @@ fn stock_removal_and_finishing() {
     N2 G97 S500 M3
     G98
     G4 P1
-    N3 G9 G1 X64. Z3. M8 F19314
+    N3 G9 G1 X64. Z3. M8 F19314.
     G0 G99
     N4 G71 U8. R0.5
     N5 F0.25 (ROUGH) (G71 written out)
@@ -132,7 +132,7 @@ fn a_pattern_along_a_contour() {
     G97 S800 M3
     G98
     G4 P1
-    G9 G1 X60. Z10. F19337
+    G9 G1 X60. Z10. F19337.
     G0 G99
     G1 X58. F0.5
     G73 U6. W3. R2
@@ -176,7 +176,7 @@ fn cycles_of_one_block() {
     G97 S800 M3
     G98
     G4 P1
-    G9 G1 X62. Z2. F19343
+    G9 G1 X62. Z2. F19343.
     G0 G99
     F0.25 (G90 written out)
     G0 X56.
@@ -241,7 +241,7 @@ fn pecking() {
     G21 G98 G54 T0300
     G97 S900 M3
     G4 P1
-    G9 G1 X0. Z4. F19999
+    G9 G1 X0. Z4. F19999.
     G0
     G74 R1.
     F90. (G74 written out)
@@ -267,7 +267,7 @@ fn cycles_of_system_b() {
     G97 S800 M3
     G94
     G4 P1
-    G9 G1 X62. Z2. F19343
+    G9 G1 X62. Z2. F19343.
     G0 G95
     G91
     F0.25 (G77 written out)
@@ -357,7 +357,7 @@ fn returns_of_lathes() {
     G21 G98 G54
     T0101
     G4 P1
-    G9 G1 X50. Z2. F19924
+    G9 G1 X50. Z2. F19924.
     G1 Z-30. F120.
     G0 X70. M5
     G9 G1 X40. Z230. F19788.

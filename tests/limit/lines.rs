@@ -26,7 +26,7 @@ fn a_rapid_of_one_axis_is_a_line() {
     // 30000 mm/min by (400 − 100)/437.5.
     assert_eq!(
         text,
-        "G21 G90\nG4 P1\nG9 G1 X400. F20571\nG9 Y300.\nG1 Y310. F500\nG4 P1\nG9 G1 Z50. F20571\n\
+        "G21 G90\nG4 P1\nG9 G1 X400. F20571.\nG9 Y300.\nG1 Y310. F500\nG4 P1\nG9 G1 Z50. F20571.\n\
          G0 F500\nM30\n"
     );
 }
@@ -78,7 +78,7 @@ fn the_largest_feed() {
     assert!(seconds(2) > std::f64::consts::PI * 50.0 / 200.0, "{csv}");
     let (code, text, errors) = limited(&shop, program, "");
     assert_eq!(code, 0, "{errors}");
-    assert!(text.contains("G9 G1 Y300. F12000\n"), "{text}");
+    assert!(text.contains("G9 G1 Y300. F12000.\n"), "{text}");
     assert!(
         text.starts_with("G21 G90\nG1 X200. F30000\nG2 X300. I50. F15000\n"),
         "{text}"

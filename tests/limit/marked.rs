@@ -109,7 +109,7 @@ fn each_language_has_its_comment() {
         (
             "haas",
             "G0 X400. (go)\r\n",
-            "G1 X400. F24000 (RAPID) (go)\r\n",
+            "G1 X400. F24000. (RAPID) (go)\r\n",
         ),
         ("grbl", "g0 x400\n", "g1 x400 f24000 (RAPID)\n"),
         // The last comment is the one that acts.
@@ -160,7 +160,7 @@ fn subprograms_of_the_program_are_marked() {
     // What was in force after such a line is put back: others may count on it.
     assert_eq!(
         again,
-        first.replace("F24000 (RAPID)\n", "F19200 (RAPID)\nF24000\n")
+        first.replace("F24000. (RAPID)\n", "F19200. (RAPID)\nF24000.\n")
     );
     assert_eq!(fits(rig("fanuc", 800.0), &again), (again.clone(), 0));
 }

@@ -230,9 +230,15 @@ impl Offsets {
         }
     }
 
-    /// Whether the offset of the system in force is known, not taken as 0.
+    /// Whether the offset of the system in force is known, not taken as 0. Of further ones
+    /// nobody says anything.
     pub(super) fn is_known(&self) -> bool {
-        self.known || self.system <= SYSTEMS && self.given & 1 << self.system != 0
+        !self.is_further() && (self.known || self.given & 1 << self.system != 0)
+    }
+
+    /// Whether a further system is in force: G54.1, G154.
+    pub(super) fn is_further(&self) -> bool {
+        self.system > SYSTEMS
     }
 
     /// Takes over what is stored for the system in force.

@@ -67,7 +67,7 @@ impl Control<'_> {
     }
 
     /// The point that G28 or G30 goes to, machine coordinates: `LinuxCNC` keeps it among
-    /// its parameters, for others the first is in the machine file.
+    /// its parameters; without those, and for others, the first is in the machine file.
     fn reference_point(
         &self,
         second: usize,
@@ -78,10 +78,9 @@ impl Control<'_> {
         let offsets = self.position.offsets();
         if self.rules.places_in_parameters {
             let point = offsets.axes_from(REFERENCE[second]);
-            if !offsets.known && point == [0.0; AXES] {
-                note_machine_zero(span, run);
+            if offsets.known || point != [0.0; AXES] {
+                return point;
             }
-            return point;
         }
         let mut point = [0.0; AXES];
         for axis in named.iter() {

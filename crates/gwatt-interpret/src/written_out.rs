@@ -2,7 +2,8 @@
 
 use super::code::Motion;
 use super::execute::Interpreter;
-use gwatt_machine::{AxisId, AxisSet, AxisValues};
+use super::offsets::REFERENCE;
+use gwatt_machine::{AXES, AxisId, AxisSet, AxisValues};
 
 impl Interpreter<'_> {
     /// Whether the values of a canned cycle are in force.
@@ -50,6 +51,20 @@ impl Interpreter<'_> {
         place
     }
 
+    /// Whether it is known where G28 leads these axes, or, `second`, G30.
+    #[must_use]
+    pub fn knows_reference(&self, second: bool, moving: AxisSet) -> bool {
+        let control = &self.control;
+        let offsets = control.position.offsets();
+        let stored =
+            offsets.known || offsets.axes_from(REFERENCE[usize::from(second)]) != [0.0; AXES];
+        let given = |axis: usize| {
+            let data = control.machine.axes[axis].as_ref();
+            data.is_some_and(|data| data.reference_mm.is_some())
+        };
+        control.rules.places_in_parameters && stored || !second && moving.iter().all(given)
+    }
+
     /// Why the places of the program may not be those of the machine that they are taken
     /// for, for a move of these axes; `None` where all between them is known.
     #[must_use]
@@ -74,6 +89,12 @@ impl Interpreter<'_> {
         }
         if control.tools.length_guessed && moving.contains(AxisId::Z as usize) {
             return Some("the length of the tool is not known: give it with --tool-table");
+        }
+        if control.position.offsets().is_further() {
+            return Some(
+                "the work offset is a further one, which the machine file has no field for: use \
+                 G54 to G59 there",
+            );
         }
         (!control.position.offsets().is_known()).then_some(
             "the work offset is not known: give it in [offsets] of the machine file, or with \

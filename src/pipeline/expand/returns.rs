@@ -7,8 +7,8 @@ use super::{Lines, Series};
 use crate::interpret::{Modal, Motion, Step};
 use crate::machine::{AxisKind, AxisSet, Lathe, Machine};
 use crate::pipeline::executor::Line;
+use crate::pipeline::untouched::goes_elsewhere;
 use crate::rewrite::Return;
-use crate::syntax::Block;
 
 /// What is said where such a block stays as it is.
 const STAYS: &str = "the way to the reference point is not gone by a feed";
@@ -42,14 +42,15 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before, machine: &Machine) ->
     }
     let (text, number) = line.key;
     let facts = &*line.facts;
+    let second = goes_elsewhere(line.block);
     let written = if text != 0 {
         Err("it stands in the file of a subprogram")
     } else if line.block.delete_level > 0 || facts.checksum {
         Err("its block may be skipped")
     } else if facts.compensated {
         Err("it runs under cutter compensation")
-    } else if facts.reference && !is_known(moving, line.block, machine) {
-        Err("where it leads is not known: give reference_mm of the axes in the machine file")
+    } else if facts.reference && !line.interpreter.knows_reference(second, moving) {
+        Err(not_known(second, machine))
     } else if let Some(why) = line.interpreter.unsure_of_places(moving) {
         Err(why)
     } else {
@@ -83,23 +84,27 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before, machine: &Machine) ->
     })
 }
 
-/// Whether the machine file says where a reference point is: that of G28 and G74 alone, but
-/// `LinuxCNC` keeps both of its own among its parameters.
-fn is_known(moving: AxisSet, block: &Block, machine: &Machine) -> bool {
-    let other = |value: f64| value == 30.0 || value == 75.0;
-    let mut words = block.words.iter();
-    let first = !words.any(|word| word.letter == b'G' && other(word.value));
-    let known = |axis: usize| {
-        let data = machine.axes[axis].as_ref();
-        data.is_some_and(|data| data.reference_mm.is_some())
-    };
-    let kept = machine
+/// Why a return cannot be gone by feeds before it where nobody has said where it leads.
+fn not_known(second: bool, machine: &Machine) -> &'static str {
+    let stored = machine
         .controller
         .language
         .family
         .facts()
         .reference_in_parameters;
-    kept || first && moving.iter().all(known)
+    match (second, stored) {
+        (false, false) => {
+            "where it leads is not known: give reference_mm of the axes in the machine file"
+        }
+        (false, true) => {
+            "where it leads is not known: give the control's --parameters, or reference_mm of the \
+             axes in the machine file"
+        }
+        (true, true) => "where it leads is not known: give the control's --parameters",
+        (true, false) => {
+            "where it leads only the control knows: the machine file has no field for this point"
+        }
+    }
 }
 
 /// The way to the reference point of SINUMERIK.

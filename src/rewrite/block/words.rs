@@ -11,7 +11,9 @@ impl Rewriter<'_> {
     pub(super) fn motion_word(&mut self, view: &BlockView<'_>) {
         let facts = view.facts;
         self.feeds_from_here |= facts.no_motion_word && view.change.as_feed;
-        if let Some(word) = facts.motion_word {
+        // G80 with a place moves by the word that comes back after it.
+        let own = facts.motion_word;
+        if let Some(word) = own.filter(|word| word.value < 4.0 || !view.change.as_feed) {
             self.feeds_from_here = false;
             self.written.motion = view.after.motion;
             if view.change.as_feed {
@@ -68,7 +70,8 @@ impl Rewriter<'_> {
                 // What the program works out stays so, unless it stands for a rapid now.
                 let computed = facts.computed_feed && !view.change.as_feed;
                 let text = computed.then(|| at_most(family, number, value)).flatten();
-                let text = text.unwrap_or_else(|| decimal(value, has_point(number)));
+                let point = has_point(number) || self.points(view);
+                let text = text.unwrap_or_else(|| decimal(value, point));
                 self.edits.push(Edit::replace(word.number, text));
                 self.written.feed = wanted;
             }
@@ -88,10 +91,14 @@ impl Rewriter<'_> {
             return;
         }
         let number = match (view.change.feed, &view.after.feed) {
-            (Some(value), feed) => decimal(
-                value,
-                feed.is_some_and(|feed| has_point(feed.text.as_bytes())),
-            ),
+            (Some(value), Some(feed)) => {
+                let point = has_point(feed.text.as_bytes()) || self.points(view);
+                decimal(value, point)
+            }
+            (Some(value), None) => {
+                let dialect = &self.machine.controller.language.dialect;
+                decimal(value, dialect.point.is_some())
+            }
             (None, Some(feed)) => feed_again(feed, facts.feed_mm_per_unit),
             (None, None) => return,
         };
@@ -102,6 +109,13 @@ impl Rewriter<'_> {
         text.extend_from_slice(number.as_bytes());
         self.edits.push(Edit::insert(view.block.words_end, text));
         self.written.feed = wanted;
+    }
+
+    /// Whether the F of a block is written with a point, however others are: where a setting
+    /// of the control decides what it means without one. An F in place of the program's own
+    /// is written like that one, which then has the same meaning.
+    fn points(&self, view: &BlockView<'_>) -> bool {
+        view.change.as_feed && self.machine.controller.language.dialect.point.is_some()
     }
 
     /// The comment of a feed that stands for a rapid, where it is asked for and not there.

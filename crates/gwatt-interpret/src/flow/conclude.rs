@@ -53,7 +53,7 @@ impl Flow {
             && let Some(transfer) = transfer
         {
             done = self.follow(transfer, interpreter);
-        } else if done.is_ok() && moves.count() > 0 {
+        } else if done.is_ok() && effects.steps.iter().any(Step::moves_axes) {
             done = self.after_move(interpreter);
         }
         if let Err(trouble) = done {

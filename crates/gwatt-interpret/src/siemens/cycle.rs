@@ -86,6 +86,9 @@ impl Control<'_> {
     /// Executes a cycle where the axes stand.
     pub(super) fn cycle(&mut self, state: &mut Siemens, call: &Call, run: &mut Run<'_, '_>) {
         run.facts.fixed = Some(FIXED);
+        // What was edited before has to be put back before it.
+        run.facts.boundary = true;
+        run.facts.uses_feed = true;
         if call.is_pattern() {
             return self.hole_pattern(state, call, run);
         }

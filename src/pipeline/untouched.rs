@@ -1,0 +1,80 @@
+//! Why the words of a block are left as they are, and what helps.
+
+use super::line_key::IN_A_FILE;
+use crate::interpret::{Facts, TOOL_CHANGE_UNKNOWN};
+use crate::machine::{Lathe, Machine, PathMode};
+use crate::motion::{CYCLE, TURNING_CYCLE};
+use crate::syntax::Block;
+
+/// Why a rapid is not written as a feed, where the program can help.
+pub(super) const PER_REVOLUTION: &str = "the feed in force is per revolution";
+pub(super) const UNKNOWN_FEED: &str =
+    "no F is in force, and the one that the control takes then is not known";
+pub(super) const NO_FEED: &str = "no F is in force, and one of the blocks that count on none cannot have its \
+     own";
+pub(super) const REFERENCE: &str = "it moves to a reference point";
+pub(super) const MACHINE_COORDINATES: &str = "G53 is for rapids";
+pub(super) const WITHOUT_STOP: &str = "without its stop the corner would be rounded";
+
+/// What helps where something may not be changed for this reason.
+pub(super) fn help(machine: &Machine, block: &Block, facts: &Facts, reason: &str) -> &'static str {
+    let language = &machine.controller.language;
+    match reason {
+        CYCLE => {
+            "--allow expand writes canned cycles out as single blocks; where it taps, more \
+             power or slower axes are needed"
+        }
+        TURNING_CYCLE if facts.cycle => {
+            "--allow expand writes turning cycles out as single blocks, where they cut no thread"
+        }
+        REFERENCE if goes_elsewhere(block) => {
+            if language.family.facts().reference_in_parameters {
+                "the way is gone by a feed before it where the point is known: give the \
+                 control's --parameters"
+            } else {
+                "only the control knows this point: write the way by hand, as feeds before it"
+            }
+        }
+        REFERENCE if language.family.facts().reference_in_parameters => {
+            "the way is gone by a feed before it where the places are known: give the control's \
+             --parameters, or reference_mm of the axes and [offsets] in the machine file"
+        }
+        REFERENCE | MACHINE_COORDINATES => {
+            "the way is gone by a feed before it where the places are known: reference_mm of \
+             the axes, the work offset ([offsets] or --parameters) and the tool's length \
+             (--tool-table); or give the speed of the return, reference_mm_min"
+        }
+        IN_A_FILE => {
+            "--with-subprograms writes the files of subprograms too, certified together with \
+             all programs that are given"
+        }
+        UNKNOWN_FEED if !language.family.facts().power_on_feed_data.is_empty() => {
+            "write F before it; or give the F of power-on, which no written one exceeds \
+             (setting data 42110): power_on_feed_mm_min under [language] of the machine file"
+        }
+        UNKNOWN_FEED => {
+            "write F before it; or give the F of power-on, which no written one exceeds: \
+             power_on_feed_mm_min under [language] of the machine file"
+        }
+        PER_REVOLUTION if language.dialect.lathe == Some(Lathe::A) => {
+            "program G98 (feed per minute) and F in it before the rapid"
+        }
+        PER_REVOLUTION => "program G94 (feed per minute) and F in it before the rapid",
+        TOOL_CHANGE_UNKNOWN => {
+            "the machine's builder decides which: tool_change = \"before-motion\" or \
+             \"after-motion\" under [language] of the machine file"
+        }
+        WITHOUT_STOP if language.g61 == PathMode::ExactStop => {
+            "program an exact stop (G61) before the block in front of it, or write the \
+             move as a feed by hand"
+        }
+        _ => "",
+    }
+}
+
+/// Whether a block goes to another reference point than the first: G30, G75.
+pub(super) fn goes_elsewhere(block: &Block) -> bool {
+    let other = |value: f64| value == 30.0 || value == 75.0;
+    let mut words = block.words.iter();
+    words.any(|word| word.letter == b'G' && other(word.value))
+}

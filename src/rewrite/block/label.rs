@@ -1,0 +1,116 @@
+//! The label of a block: what others jump to.
+
+use crate::machine::Machine;
+use crate::source::Span;
+use crate::syntax::Block;
+
+/// A label with the blanks after it.
+#[derive(Debug)]
+pub(super) struct Label {
+    /// Where it stands in its line.
+    pub(super) span: Span,
+    /// As it is written at the front of another line.
+    pub(super) text: Vec<u8>,
+    /// Another line has it.
+    pub(super) is_taken: bool,
+}
+
+impl Label {
+    /// The block number, and a name with a colon; on OSP a sequence name as well.
+    pub(super) fn of(text: &[u8], block: &Block, machine: &Machine) -> Option<Self> {
+        let number = block.number.map(|word| word.span);
+        let start = number.map_or_else(|| front(text, block), |span| span.start as usize);
+        let mut end = number.map_or(start, |span| span.end as usize);
+        let rest = text.get(end..)?;
+        let named = after_blanks(rest);
+        if let Some(length) = name_with_colon(text.get(end + named..)?) {
+            end += named + length;
+        } else if number.is_none() && machine.controller.language.dialect.osp {
+            end += sequence_name(rest)?;
+        }
+        if end == start {
+            return None;
+        }
+        let mut label = text.get(start..end)?.to_vec();
+        label.push(b' ');
+        let blanks = after_blanks(text.get(end..)?);
+        Some(Self {
+            span: Span::new(start, end + blanks),
+            text: label,
+            is_taken: false,
+        })
+    }
+}
+
+/// Where a block without a number begins after its mark for block delete.
+fn front(text: &[u8], block: &Block) -> usize {
+    let bom = usize::from(text.starts_with(b"\xEF\xBB\xBF")) * 3;
+    let mut at = bom + after_blanks(text.get(bom..).unwrap_or_default());
+    if block.delete_level > 0 && text.get(at) == Some(&b'/') {
+        at += 1;
+        let digits = text.get(at..).unwrap_or_default();
+        at += digits.iter().take_while(|it| it.is_ascii_digit()).count();
+        at += after_blanks(text.get(at..).unwrap_or_default());
+    }
+    at
+}
+
+fn after_blanks(text: &[u8]) -> usize {
+    text.iter()
+        .take_while(|it| matches!(it, b' ' | b'\t'))
+        .count()
+}
+
+/// The length of `NAME:`.
+fn name_with_colon(text: &[u8]) -> Option<usize> {
+    let begins = text
+        .first()
+        .is_some_and(|it| it.is_ascii_alphabetic() || *it == b'_');
+    let length = text
+        .iter()
+        .take_while(|it| it.is_ascii_alphanumeric() || **it == b'_')
+        .count();
+    let colon = text.get(length) == Some(&b':') && text.get(length + 1) != Some(&b'=');
+    (begins && colon).then_some(length + 1)
+}
+
+/// The length of a name such as `NLOOP` (OSP programming manual, "Sequence Name").
+fn sequence_name(text: &[u8]) -> Option<usize> {
+    let length = text
+        .iter()
+        .take_while(|it| it.is_ascii_alphanumeric())
+        .count();
+    let own = matches!(text, [b'N' | b'n', next, ..] if next.is_ascii_alphabetic());
+    (own && length <= 5).then_some(length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::syntax::scan_line;
+
+    fn label(machine: &str, line: &str) -> Option<String> {
+        let machine = Machine::load(machine).unwrap().0;
+        let mut block = Block::default();
+        scan_line(line.as_bytes(), false, &mut block);
+        let found = Label::of(line.as_bytes(), &block, &machine)?;
+        assert!(found.text.ends_with(b" "));
+        Some(String::from_utf8(found.span.of(line.as_bytes()).to_vec()).unwrap())
+    }
+
+    #[test]
+    fn labels_are_found_with_their_blanks() {
+        for (line, expected) in [
+            ("N10 G0 X1\n", Some("N10 ")),
+            ("/N10G0 X1\n", Some("N10")),
+            ("/2 N10  G0 X1\n", Some("N10  ")),
+            ("G0 X1\n", None),
+            ("N20 MARK_1: G0 X1\n", Some("N20 MARK_1: ")),
+            ("  MARK: G0 X1\n", Some("MARK: ")),
+            ("/MARK: G0 X1\n", Some("MARK: ")),
+            ("X:=1\n", None),
+        ] {
+            assert_eq!(label("three-axis", line).as_deref(), expected, "{line}");
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Programs that jump to a block which is changed: lines that are put before it are executed by
+//! whoever jumps there.
+
+use insta::assert_snapshot;
+
+use crate::shop::Shop;
+
+fn shop(controller: &str) -> Shop {
+    let rest = "[path]\nrapid = \"linear\"";
+    Shop::mill(controller, "peak_power_w = 600", rest, "")
+}
+
+/// What is written, which fits when it is read again.
+fn limited(shop: &Shop, program: &str, options: &str) -> String {
+    shop.put("a.nc", program);
+    let (code, text, errors) = shop.run(format!("limit a.nc {options}").trim_end());
+    assert_eq!(code, 0, "{errors}");
+    shop.put("out.nc", &text);
+    let (code, _, errors) = shop.run("check out.nc");
+    assert_eq!(code, 0, "{errors}\n{text}");
+    text
+}
+
+/// The dwell that keeps a corner sharp stands after the number that the jump looks for.
+#[test]
+fn a_dwell_is_where_the_jump_leads() {
+    let program = "G21 G90 G54\n#1=0\nN10 G0 X1000. Y800.\nG1 X990. F500.\n#1=#1+1\n\
+                   IF [#1 LT 3] GOTO 10\nM30\n";
+    assert_snapshot!(limited(&shop("fanuc"), program, ""), @r"
+    G21 G90 G54
+    #1=0
+    N10 G4 P1
+    G9 G1 X1000. Y800. F26404.
+    G0
+    G1 X990. F500.
+    #1=#1+1
+    IF [#1 LT 3] GOTO 10
+    M30
+    ");
+    // Of subprograms that are called by a number too.
+    let program = "G21 G90 G54\nM97 P100\nM30\nN100 G0 X1000. Y800.\nG1 X990. F500.\nM99\n";
+    assert_snapshot!(limited(&shop("haas"), program, ""), @r"
+    G21 G90 G54
+    M97 P100
+    M30
+    N100 G4 P1
+    G9 G1 X1000. Y800. F26404.
+    G0
+    G1 X990. F500.
+    M99
+    ");
+}
+
+/// Names with a colon go along as well, after the number that stands before them.
+#[test]
+fn names_go_along() {
+    let program = "G71 G90 G54 G64\nR1=0\nN5 LB1: G0 X=IC(1000) Y=IC(800)\nG1 X0 F500\nR1=R1+1\n\
+                   IF R1<3 GOTOB LB1\nM30\n";
+    assert_snapshot!(limited(&shop("siemens"), program, "--allow unverified"), @"");
+}
+
+/// Without a line before it a block keeps its label, and so does one that nothing changes.
+#[test]
+fn labels_stay_where_nothing_stands_before() {
+    let program = "G21 G90 G61\n#1=0\nG1 X1. F500.\nN10 G0 X1000. Y800.\nN20 G1 X990. F500.\n\
+                   #1=#1+1\nIF [#1 LT 3] GOTO 10\nM30\n";
+    assert_snapshot!(limited(&shop("fanuc"), program, ""), @r"
+    G21 G90 G61
+    #1=0
+    G1 X1. F500.
+    N10 G1 X1000. Y800. F26395.
+    G0 F500.
+    N20 G1 X990. F500.
+    #1=#1+1
+    IF [#1 LT 3] GOTO 10
+    M30
+    ");
+}
+
+/// A modal macro is called by blocks that move axes, not by a dwell (B-63944EN, "Modal Call").
+#[test]
+fn a_dwell_calls_no_macro() {
+    let program = "O6\nG21 G90 G54 G0 X0 Y0 Z50.\nG66 P9001 Z-5.\nX1000. Y800.\nG4 P100\nG67\n\
+                   G0 X0 Y0\nM30\nO9001\nG91 G1 Z#26 F100\nG1 Z-#26\nG90\nM99\n";
+    let shop = shop("fanuc");
+    shop.put("a.nc", program);
+    let (_, out, _) = shop.run("moves a.nc");
+    assert_eq!(out.matches("\"line\":10,").count(), 1, "{out}");
+    assert_snapshot!(limited(&shop, program, ""), @r"
+    O6
+    G21 G90 G54 G0 X0 Y0 Z50.
+    G66 P9001 Z-5.
+    G4 P1
+    G9 G1 X1000. Y800. F26404.
+    G0
+    G4 P100
+    G67
+    G4 P1
+    G9 G1 X0 Y0 F26404.
+    G0 F100
+    M30
+    O9001
+    G91 G1 Z#26 F100
+    G1 Z-#26
+    G90
+    M99
+    ");
+}

@@ -1,0 +1,138 @@
+//! Words of the program itself that stand in the way of a change, or next to it.
+
+use insta::assert_snapshot;
+
+use crate::shop::Shop;
+
+fn shop(controller: &str, power_w: f64, rest: &str) -> Shop {
+    let converter = format!("peak_power_w = {power_w}");
+    let rest = format!("[path]\nrapid = \"linear\"\n{rest}");
+    Shop::mill(controller, &converter, &rest, "")
+}
+
+fn limited(shop: &Shop, program: &str, options: &str) -> (i32, String, String) {
+    shop.put("a.nc", program);
+    shop.run(format!("limit a.nc {options}").trim_end())
+}
+
+fn written(shop: &Shop, program: &str, options: &str) -> String {
+    let (code, text, errors) = limited(shop, program, options);
+    assert_eq!(code, 0, "{errors}");
+    text
+}
+
+/// A program with accelerations of its own is limited like others.
+#[test]
+fn accelerations_of_the_program() {
+    let shop = shop("marlin", 600.0, "");
+    let program = "G21\nG90\nM204 P1000 T1500\nG0 X100 Y80 F9000\nG1 X50 F1200\n";
+    let (code, _, errors) = limited(&shop, program, "--allow feed");
+    assert_eq!(code, 0, "{errors}");
+}
+
+/// The F of the program is in force again before a cycle that counts on it.
+#[test]
+fn cycles_of_sinumerik_get_their_feed() {
+    let program = "G71 G90 G17 G60 G54 F300\nG0 X1000 Y800 Z50\nCYCLE81(50,0,2,-10)\nG0 X0\nM30\n";
+    let shop = shop("siemens", 600.0, "");
+    assert_snapshot!(written(&shop, program, ""), @r"
+    G71 G90 G17 G60 G54 F300
+    G1 X1000 Y800 Z50 F26278
+    G0 F300
+    CYCLE81(50,0,2,-10)
+    G0 X0
+    M30
+    ");
+}
+
+/// G80 with a place moves by the word that comes back: it is not made G81.
+#[test]
+fn a_cancelled_cycle_with_a_place() {
+    let program = "G21 G90 G54\nG0 X0 Y0 Z50.\nG98 G81 X10. Y8. Z-10. R2. F200.\n\
+                   G80 X1000. Y800.\nM30\n";
+    let shop = shop("fanuc", 600.0, "");
+    assert_snapshot!(written(&shop, program, ""), @r"
+    G21 G90 G54
+    G0 X0 Y0 Z50.
+    G98 G81 X10. Y8. Z-10. R2. F200.
+    G9 G1 G80 X1000. Y800. F26404.
+    G0 F200.
+    M30
+    ");
+}
+
+/// A motion word that is worked out stays, and the reason says so.
+#[test]
+fn motion_words_that_are_worked_out() {
+    let shop = shop("fanuc", 600.0, "");
+    let program = "G21 G90 G54\n#1=0\nG#1 X1000. Y800.\nM30\n";
+    let (code, text, errors) = limited(&shop, program, "");
+    assert_eq!((code, text.as_str()), (1, ""));
+    assert!(
+        errors.contains("its motion word is worked out by the program"),
+        "{errors}"
+    );
+}
+
+/// What an F without a point means is a setting of the control: one that stands for a rapid has
+/// a point, and one in the place of another is written like that.
+#[test]
+fn feeds_have_a_point_where_it_matters() {
+    let shop = shop("haas", 600.0, "");
+    for program in [
+        "G61\nG0 X1000. Y800.\nM30\n",
+        "G61\nG1 X1. F500\nG0 X1000. Y800.\nM30\n",
+    ] {
+        let text = written(&shop, program, "");
+        let rapid = text.lines().find(|line| line.contains("Y800."));
+        assert!(rapid.is_some_and(|line| line.ends_with('.')), "{text}");
+    }
+    let shop = self::shop("haas", 200.0, "");
+    let text = written(&shop, "G61\nG1 X1000. Y800. F20000\nM30\n", "--allow feed");
+    assert!(!text.contains(".\nM30"), "{text}");
+}
+
+/// Where G28 and G30 lead is not guessed.
+#[test]
+fn reference_points_that_nobody_gave() {
+    let program = "G21 G90 G54\nG0 X100 Y80 Z50\nG30\nM2\n";
+    for (controller, word, help) in [
+        ("linuxcnc", "G28", "--parameters, or reference_mm"),
+        ("grbl", "G28", "--parameters, or reference_mm"),
+        ("linuxcnc", "G30", "give the control's --parameters"),
+        ("fanuc", "G30 X0 Y0 Z0", "only the control knows this point"),
+    ] {
+        let shop = shop(
+            controller,
+            600.0,
+            "[offsets]\nG54 = { X = -450, Y = -330, Z = -300 }",
+        );
+        let program = program.replace("G30", word);
+        let (code, text, errors) = limited(&shop, &program, "");
+        assert_eq!((code, text.as_str()), (1, ""), "{controller} {program}");
+        assert!(errors.contains(help), "{controller} {program}: {errors}");
+    }
+}
+
+/// What the places of a program rest on is said with the certificate.
+#[test]
+fn the_certificate_names_where_places_come_from() {
+    let shop = shop(
+        "fanuc",
+        600.0,
+        "[offsets]\nG54 = { X = -450, Y = -330, Z = -300 }",
+    );
+    shop.put("tools.tbl", "T1 P1 Z100\n");
+    let program = "G21 G90 G54\nG0 X1000. Y800.\nM30\n";
+    shop.put("a.nc", program);
+    let (code, _, errors) = shop.run("limit a.nc --tool-table tools.tbl");
+    assert_eq!(code, 0, "{errors}");
+    assert!(
+        errors.contains("work offsets are those under [offsets]"),
+        "{errors}"
+    );
+    assert!(
+        errors.contains("tools are those of the tool table"),
+        "{errors}"
+    );
+}
