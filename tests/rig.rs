@@ -17,6 +17,7 @@ pub(crate) fn axis() -> Axis {
     Axis {
         kind: AxisKind::Linear,
         rapid_mm_s: 500.0,
+        max_feed_mm_s: f64::INFINITY,
         reference_mm_s: f64::INFINITY,
         reference_mm: None,
         accel_mm_s2: 5000.0,

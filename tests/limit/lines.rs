@@ -84,3 +84,26 @@ fn the_largest_feed() {
         "{text}"
     );
 }
+
+/// By axis: along a line no axis is faster than its own largest speed, and no F is written that
+/// would make it so; 3-4-5, so that X has 0.8 of the F.
+#[test]
+fn the_largest_feed_of_an_axis() {
+    let shop = shop("[path]\nrapid = \"linear\"", 500.0);
+    let text = std::fs::read_to_string(shop.0.path().join("mill.toml")).unwrap();
+    shop.put(
+        "mill.toml",
+        &text.replacen("[axes.X]\n", "[axes.X]\nmax_feed_mm_min = 9600\n", 1),
+    );
+    let program = "G21 G90\nG1 X400. Y300. F30000\nG0 X0. Y0.\nM30\n";
+    shop.put("a.nc", program);
+    let (_, csv, _) = shop.run("report a.nc");
+    let row: Vec<_> = csv.lines().nth(1).unwrap().split(',').collect();
+    // 500 mm at 12000 mm/min, and the ramps of X at 3000 mm/s² by 0.8.
+    let ramps_s = 200.0 / 3750.0;
+    let duration_s: f64 = row[5].parse().unwrap();
+    assert!((duration_s - (2.5 + ramps_s)).abs() < 1e-6, "{csv}");
+    let (code, text, errors) = limited(&shop, program, "");
+    assert_eq!(code, 0, "{errors}");
+    assert!(text.contains("G9 G1 X0. Y0. F12000.\n"), "{text}");
+}

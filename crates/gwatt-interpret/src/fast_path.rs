@@ -67,10 +67,10 @@ impl Control<'_> {
             feed = Some(plain_feed(word, text, self.modal.mm_per_unit)?);
         }
         let Straight { end, moving, .. } = &straight;
-        let (length_mm, linear) = path_length(&self.position.at, end, *moving, None);
+        let way = path_length(&self.position.at, end, *moving, None);
         let (kind, feed_mm_s) = if uses_feed {
             let feed = feed.as_ref().or(self.modal.feed.as_ref())?;
-            (MoveKind::Feed, self.straight_speed(feed, linear)?)
+            (MoveKind::Feed, self.straight_speed(feed, end, way)?)
         } else {
             (MoveKind::Rapid, f64::INFINITY)
         };
@@ -88,7 +88,7 @@ impl Control<'_> {
             moving: *moving,
             unknown_start: AxisSet::default(),
             arc: None,
-            length_mm,
+            length_mm: way.0,
             feed_mm_s,
             feed_mode: FeedMode::PerMinute,
             accel_mm_s2: *self.knobs.accel(kind),
@@ -127,15 +127,24 @@ impl Control<'_> {
         Some(())
     }
 
-    /// The speed of a straight feed, mm/s; `None` for an F that is none.
+    /// The speed of a straight feed to `end`, on a way with its length and whether linear axes
+    /// move, mm/s; `None` for an F that is none.
     #[inline]
-    fn straight_speed(&self, feed: &Feed, linear: bool) -> Option<f64> {
+    fn straight_speed(
+        &self,
+        feed: &Feed,
+        end: &AxisValues,
+        (length_mm, linear): (f64, bool),
+    ) -> Option<f64> {
         let speed_mm_s = if linear {
             feed.linear_mm_s()
         } else {
             feed.rotary_deg_s()
         };
-        (feed.value > 0.0).then(|| speed_mm_s.min(self.machine.path.max_feed_mm_s))
+        let most_mm_s = self
+            .machine
+            .max_feed_mm_s(&self.position.at, end, length_mm);
+        (feed.value > 0.0).then(|| speed_mm_s.min(most_mm_s))
     }
 
     /// Reads words of axes, G0, G1 and F; `None` for others, for none of an

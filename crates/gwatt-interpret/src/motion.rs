@@ -344,6 +344,10 @@ impl Control<'_> {
         }
         let speed_mm_s = self.feed_speed(run, end, arc, length_mm, linear)?;
         Some(match kind {
+            MoveKind::Feed if self.position.unknown.is_empty() => {
+                let from = &self.position.at;
+                speed_mm_s.min(self.machine.max_feed_mm_s(from, end, length_mm))
+            }
             MoveKind::Feed | MoveKind::Arc => speed_mm_s.min(self.machine.path.max_feed_mm_s),
             _ => speed_mm_s,
         })

@@ -316,16 +316,24 @@ fn either<T>(a: Option<T>, b: Option<T>, both: impl FnOnce(T, T) -> T) -> Option
     }
 }
 
+/// The largest path speed of a feed on the way of a move, mm/s.
+fn max_feed_mm_s(machine: &Machine, mv: &Move) -> f64 {
+    if mv.arc.is_some() || !mv.unknown_start.is_empty() {
+        return machine.path.max_feed_mm_s;
+    }
+    machine.max_feed_mm_s(&mv.start, &mv.end, mv.length_mm)
+}
+
 /// Path speed in mm/s (degrees/s) of an F in program units.
 pub(super) fn feed_speed(machine: &Machine, mv: &Move, permit: &Permit, feed: f64) -> f64 {
     let speed_mm_s = feed * feed_unit(machine, mv, permit) / SECONDS_PER_MINUTE;
-    speed_mm_s.min(machine.path.max_feed_mm_s)
+    speed_mm_s.min(max_feed_mm_s(machine, mv))
 }
 
 /// The F in program units, rounded down, of a path speed in mm/s (degrees/s): none that the
 /// control does not take.
 pub(super) fn feed_word(machine: &Machine, mv: &Move, permit: &Permit, speed_mm_s: f64) -> f64 {
-    let speed_mm_s = speed_mm_s.min(machine.path.max_feed_mm_s);
+    let speed_mm_s = speed_mm_s.min(max_feed_mm_s(machine, mv));
     round_feed_down(speed_mm_s * SECONDS_PER_MINUTE / feed_unit(machine, mv, permit))
 }
 

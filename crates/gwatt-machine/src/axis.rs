@@ -112,6 +112,8 @@ pub struct Axis {
     pub kind: AxisKind,
     /// Rapid speed in mm/s or degrees/s; caps feeds too.
     pub rapid_mm_s: f64,
+    /// Largest speed of the axis in a feed, mm/s or degrees/s; infinite where none is known.
+    pub max_feed_mm_s: f64,
     /// Speed on the way to the reference point (G28, homing) in mm/s or degrees/s; infinite
     /// where it is not given: that of rapids.
     pub reference_mm_s: f64,

@@ -176,6 +176,24 @@ pub struct Path {
     pub accel_mm_s2: [f64; 3],
 }
 
+impl Machine {
+    /// The largest path speed of a feed along a straight way, mm/s: the control's own largest,
+    /// and such that no axis is faster than its own (Fanuc's parameters 1422 and 1430). On a
+    /// way that only turns it is in degrees/s.
+    #[must_use]
+    pub fn max_feed_mm_s(&self, start: &AxisValues, end: &AxisValues, length_mm: f64) -> f64 {
+        let mut most = self.path.max_feed_mm_s;
+        for axis in self.axis_set.iter() {
+            let own = self.axes[axis].map_or(f64::INFINITY, |data| data.max_feed_mm_s);
+            let way = (end[axis] - start[axis]).abs();
+            if own < f64::INFINITY && way > 0.0 {
+                most = most.min(own * length_mm / way);
+            }
+        }
+        most
+    }
+}
+
 impl Path {
     /// Whether the axes of a move stay beyond the clearance wherever each of them is between
     /// `start` and `end`; false without one.

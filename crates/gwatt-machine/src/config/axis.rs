@@ -125,6 +125,8 @@ impl Builder {
         plausible::linear(findings, table, &accel, &mass);
         Some(Axis {
             rapid_mm_s: rapid.value,
+            max_feed_mm_s: value(table.max_feed_mm_min.as_ref(), f64::INFINITY)
+                / SECONDS_PER_MINUTE,
             reference_mm_s: reference_mm_s.unwrap_or(f64::INFINITY),
             reference_mm,
             accel_mm_s2: accel.value,
@@ -310,6 +312,8 @@ impl Builder {
         plausible::rotary(findings, table, &accel, &inertia);
         Some(Axis {
             rapid_mm_s: rapid.value,
+            max_feed_mm_s: value(table.max_feed_deg_min.as_ref(), f64::INFINITY)
+                / SECONDS_PER_MINUTE,
             accel_mm_s2: accel.value,
             jerk_mm_s3: value(table.jerk_deg_s3.as_ref(), 0.0),
             reference_mm_s: value(table.reference_deg_min.as_ref(), f64::INFINITY)
@@ -330,6 +334,7 @@ impl Builder {
         Axis {
             kind: self.kind,
             rapid_mm_s: 0.0,
+            max_feed_mm_s: f64::INFINITY,
             reference_mm_s: f64::INFINITY,
             reference_mm: None,
             accel_mm_s2: 0.0,
@@ -397,6 +402,11 @@ fn of_rotary_axes(t: &AxisTable) -> Vec<Foreign> {
         ("jerk_deg_s3", jerk, "jerk_mm_s3"),
         ("reference_deg_min", reference_speed, "reference_mm_min"),
         ("reference_deg", reference, "reference_mm"),
+        (
+            "max_feed_deg_min",
+            span(t.max_feed_deg_min.as_ref()),
+            "max_feed_mm_min",
+        ),
         ("moved_inertia_kg_m2", inertia, "moved_mass_kg"),
     ]
 }
@@ -415,6 +425,11 @@ fn of_linear_axes(t: &AxisTable) -> Vec<Foreign> {
         ("rapid_mm_min", rapid, "rapid_deg_min"),
         ("reference_mm_min", reference_speed, "reference_deg_min"),
         ("reference_mm", reference, "reference_deg"),
+        (
+            "max_feed_mm_min",
+            span(t.max_feed_mm_min.as_ref()),
+            "max_feed_deg_min",
+        ),
         ("home_mm_min", home_speed, "reference_deg_min"),
         ("home_mm", span(t.home_mm.as_ref()), "reference_deg"),
         ("accel_mm_s2", span(t.accel_mm_s2.as_ref()), "accel_deg_s2"),

@@ -24,6 +24,8 @@ pub(crate) struct AxisTable {
     pub(crate) kind: Option<At<KindName>>,
     /// Linear: rapid speed in mm/min; caps feeds too.
     pub(crate) rapid_mm_min: Option<Positive>,
+    /// Linear: largest speed of the axis in a feed in mm/min; default: none is known.
+    pub(crate) max_feed_mm_min: Option<Positive>,
     /// Linear: speed on the way to the reference point (G28, homing) in mm/min; default: the
     /// rapid speed.
     pub(crate) reference_mm_min: Option<Positive>,
@@ -36,6 +38,8 @@ pub(crate) struct AxisTable {
     pub(crate) home_mm_min: Option<Positive>,
     /// The same as `reference_mm`, by an earlier name.
     pub(crate) home_mm: Option<Number>,
+    /// Rotary: largest speed of the axis in a feed in degrees/min; default: none is known.
+    pub(crate) max_feed_deg_min: Option<Positive>,
     /// Rotary: speed on the way to the reference point in degrees/min; default: the rapid speed.
     pub(crate) reference_deg_min: Option<Positive>,
     /// Rotary: machine coordinate of the reference point in degrees; default: not known.
