@@ -80,7 +80,7 @@ pub struct Rewriter<'m> {
     /// What lines that are inserted begin with, so that they are skipped with their block.
     skip: String,
     /// The label of the block that is written, for the first line that is inserted before it:
-    /// whoever jumps to the block executes that line too.
+    /// a jump to the block executes that line too.
     label: Option<Label>,
     /// The last line that was written has an end.
     complete: bool,

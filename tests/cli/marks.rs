@@ -32,7 +32,7 @@ fn a_program_is_changed_in_place_again_and_again() {
     let usual = ["limit", "far.nc", "--in-place", "--mark-rapids", "-m"];
     let limit = |machine: &str| shop.run(&[&usual[..], &[machine]].concat());
     let marked =
-        |feed: &str| format!("G21 G90 G94\nG1 X400. F{feed} (RAPID) (far)\nG1 Y1. F500.\nM30\n");
+        |feed: &str| format!("G21 G90 G94\nG1 X400. F{feed}. (RAPID) (far)\nG1 Y1. F500.\nM30\n");
     assert_eq!(limit("large.toml").code, 0);
     assert_eq!(shop.get("far.nc"), marked("24000"));
     let backups = shop.files().len();
@@ -87,7 +87,7 @@ fn a_mark_of_ones_own() {
     ]);
     assert_eq!(ran.code, 0, "{}", ran.stderr);
     assert!(
-        ran.stdout.contains(" F24000 (was G0) (far)\n"),
+        ran.stdout.contains(" F24000. (was G0) (far)\n"),
         "{}",
         ran.stdout
     );
@@ -117,12 +117,12 @@ fn files_of_subprograms_are_marked() {
     };
     assert_eq!(limit("main.nc", "large.toml", "fit").code, 0);
     let sub = |feed: u32| {
-        format!("O0100\nG1 X400. F{feed} (RAPID)\nG0\nG1 X0. F{feed} (RAPID)\nG0\nM99\n")
+        format!("O0100\nG1 X400. F{feed}. (RAPID)\nG0\nG1 X0. F{feed}. (RAPID)\nG0\nM99\n")
     };
     assert_eq!(shop.get("fit/O0100.nc"), sub(24000));
     let again = limit("fit/main.nc", "small.toml", "smaller");
     assert_eq!(again.code, 0, "{}", again.stderr);
-    let smaller = sub(19200).replace("(RAPID)\n", "(RAPID)\nF24000\n");
+    let smaller = sub(19200).replace("(RAPID)\n", "(RAPID)\nF24000.\n");
     assert_eq!(shop.get("smaller/O0100.nc"), smaller);
 }
 
@@ -166,7 +166,7 @@ fn presets_are_for_strategies_that_have_them() {
     let ran = limit(&["--strategy", "preset", "--preset-else", "speed", "--always"]);
     assert_eq!(ran.code, 0, "{}", ran.stderr);
     assert!(
-        ran.stdout.contains("\nG1 X400. F19199 (far)\n"),
+        ran.stdout.contains("\nG1 X400. F19199. (far)\n"),
         "{}",
         ran.stdout
     );

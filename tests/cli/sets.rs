@@ -184,7 +184,7 @@ fn subprograms_of_every_language() {
             "fanuc",
             ("f.nc", "G21 G90 G94\nG0 X1000.\nG65 P9 A0\nM30\n"),
             ("9", "O9\nG0 X#1 Y0.\nM99\n"),
-            "O9\nG1 X#1 Y0. F24000\nG0\nM99\n",
+            "O9\nG1 X#1 Y0. F24000.\nG0\nM99\n",
         ),
         (
             "fanuc",
@@ -242,7 +242,10 @@ fn a_subprogram_in_a_loop() {
          END1\nM30\n",
     );
     fits(&shop, &["loop.nc"]);
-    assert_eq!(shop.get("fit/O0100.nc"), HOME_OF_BOTH);
+    assert_eq!(
+        shop.get("fit/O0100.nc"),
+        HOME_OF_BOTH.replace(" (home)", ". (home)")
+    );
 }
 
 #[test]

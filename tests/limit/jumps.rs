@@ -1,5 +1,5 @@
 //! Programs that jump to a block which is changed: lines that are put before it are executed by
-//! whoever jumps there.
+//! a jump there too.
 
 use insta::assert_snapshot;
 
@@ -56,7 +56,19 @@ fn a_dwell_is_where_the_jump_leads() {
 fn names_go_along() {
     let program = "G71 G90 G54 G64\nR1=0\nN5 LB1: G0 X=IC(1000) Y=IC(800)\nG1 X0 F500\nR1=R1+1\n\
                    IF R1<3 GOTOB LB1\nM30\n";
-    assert_snapshot!(limited(&shop("siemens"), program, "--allow unverified"), @"");
+    assert_snapshot!(limited(&shop("siemens"), program, "--allow unverified"), @r"
+    G71 G90 G54 G64
+    R1=0
+    N5 LB1: ACC[X]=57 ACC[Y]=57 ACC[Z]=57
+    G0 X=IC(1000) Y=IC(800)
+    ACC[X]=100 ACC[Y]=100 ACC[Z]=100
+    ACC[X]=57 ACC[Y]=57 ACC[Z]=57
+    G1 X0 F500
+    ACC[X]=100 ACC[Y]=100 ACC[Z]=100
+    R1=R1+1
+    IF R1<3 GOTOB LB1
+    M30
+    ");
 }
 
 /// Without a line before it a block keeps its label, and so does one that nothing changes.

@@ -75,7 +75,7 @@ fn motion_words_that_are_worked_out() {
 }
 
 /// What an F without a point means is a setting of the control: one that stands for a rapid has
-/// a point, and one in the place of another is written like that.
+/// a point, and one in place of another is written like that.
 #[test]
 fn feeds_have_a_point_where_it_matters() {
     let shop = shop("haas", 600.0, "");

@@ -55,7 +55,7 @@ mod tests {
     use super::*;
     use crate::pipeline::{Moves, Options};
 
-    /// A feed in the place of a rapid runs on neither from the feed before it nor into the one
+    /// A feed in place of a rapid runs on neither from the feed before it nor into the one
     /// after it.
     #[test]
     fn a_stop_that_is_missing_is_seen() {
