@@ -1,6 +1,7 @@
-//! The page and the still picture of `report`, `check` and `limit`.
+//! The page and the still picture of `report`, `check`, `limit` and `diff`.
 
 mod browser;
+mod compared;
 mod outputs;
 mod shown;
 

@@ -37,6 +37,7 @@ mod many;
 mod model_choice;
 mod output;
 mod page;
+mod paired;
 mod places;
 mod progress;
 mod recorded;

@@ -7,7 +7,7 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use gwatt::machine::Machine;
 use gwatt::pipeline::{self, Failure, Options, Summary};
-use gwatt::report::{Found, LineTexts, Page, PageRows, PageSeries, Side};
+use gwatt::report::{Compared, Found, LineTexts, Page, PageRows, PageSeries, Side};
 
 use super::input::Program;
 use super::output::{Spool, Target};
@@ -172,6 +172,35 @@ pub fn draw_limit(
         program: &program.name,
         machine,
         found,
+        rows,
+        before: before.as_ref(),
+        after: after.as_ref(),
+        texts: &texts,
+    };
+    Ok(frames.draw(&page)?)
+}
+
+/// Draws a program on two machines.
+pub fn draw_diff(
+    frames: &mut Frames,
+    program: &Program,
+    setups: [&Setup; 2],
+    compared: Compared<'_>,
+    rows: &PageRows,
+) -> Result<(), Refused> {
+    let series = |which: usize, side: Side| -> Result<Option<PageSeries>, Failure> {
+        let options = setups[which].options_for(program);
+        let duration_s = compared.summaries[which].duration_s;
+        let machine = &setups[which].machine;
+        planned(program.open()?, machine, &options, duration_s, rows, side)
+    };
+    let before = series(0, Side::Before)?;
+    let after = series(1, Side::After)?;
+    let texts = LineTexts::read(program.open()?, rows, &compared.summaries)?;
+    let page = Page {
+        program: &program.name,
+        machine: &setups[0].machine,
+        found: Found::Diff(compared),
         rows,
         before: before.as_ref(),
         after: after.as_ref(),

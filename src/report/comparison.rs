@@ -15,10 +15,12 @@ use crate::pipeline::{Failure, OverTime, Summary};
 const LISTED_MAX: usize = 10;
 
 /// A move that fits on one machine only.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Change {
     /// Line from 1.
     pub line: u64,
+    /// The file that it stands in; empty for the program itself.
+    pub file: String,
     /// True: it fits on the second machine only.
     pub begins: bool,
 }
@@ -50,6 +52,17 @@ impl Comparison {
         }
         if self.changes.len() < LISTED_MAX {
             self.changes.push(change);
+        }
+    }
+
+    /// How many limits over time begin and cease to fit.
+    #[must_use]
+    pub fn limit_changes(&self) -> [usize; 2] {
+        match (&self.from, &self.to) {
+            (Ok(from), Ok(to)) => {
+                [(from, to), (to, from)].map(|(one, other)| exceeded_beyond(one, other).count())
+            }
+            _ => [0; 2],
         }
     }
 
@@ -126,7 +139,11 @@ fn listed(comparison: &Comparison) -> String {
     for change in &comparison.changes {
         let verb = if change.begins { "begins" } else { "ceases" };
         let program = &comparison.program;
-        let _ = writeln!(text, "{program}: line {} {verb} to fit", change.line);
+        let file = match change.file.as_str() {
+            "" => String::new(),
+            file => format!(" of {file}"),
+        };
+        let _ = writeln!(text, "{program}: line {}{file} {verb} to fit", change.line);
     }
     let more = comparison.begin + comparison.cease - comparison.changes.len() as u64;
     if more > 0 {
@@ -173,6 +190,7 @@ pub fn comparison_csv(
         let (Ok(before), Ok(after)) = (&comparison.from, &comparison.to) else {
             continue;
         };
+        let [limits_begin, limits_cease] = comparison.limit_changes();
         out.serialize(Line {
             program: &comparison.program,
             from,
@@ -189,8 +207,8 @@ pub fn comparison_csv(
             unfit_to: after.unfit_count,
             begin_to_fit: comparison.begin,
             cease_to_fit: comparison.cease,
-            limits_begin_to_fit: exceeded_beyond(before, after).count(),
-            limits_cease_to_fit: exceeded_beyond(after, before).count(),
+            limits_begin_to_fit: limits_begin,
+            limits_cease_to_fit: limits_cease,
         })?;
     }
     out.flush()

@@ -58,7 +58,7 @@ pub use drives::{DriveRows, drives_text};
 pub use github::github;
 pub use held::Held;
 #[cfg(feature = "html")]
-pub use html::{Found, LineTexts, Page, PageRows, PageSeries, Side};
+pub use html::{Compared, Found, LineTexts, Page, PageRows, PageSeries, Side};
 pub use identified::{
     Heading, flexible_json, flexible_text, margin, power_model_json, power_model_text, rigid_json,
     rigid_text,

@@ -5,24 +5,27 @@ use std::process::Command;
 
 use super::{Desk, example};
 
-/// `page.mjs` says by itself that it skipped where Chromium or a package is not there.
 #[test]
 fn a_page_works_in_chromium() {
     let desk = Desk::new();
     let program = example("simultaneous-start.ngc");
-    desk.exits(
-        0,
-        &[
-            "limit",
-            &program,
-            "-m",
-            "three-axis",
-            "-o",
-            "fit.ngc",
-            "--html",
-            "page.html",
-        ],
-    );
+    let machine = ["-m", "three-axis"];
+    let files = ["-o", "fit.ngc", "--html", "page.html"];
+    desk.exits(0, &[&["limit", &program], &machine[..], &files].concat());
+    works(&desk);
+}
+
+#[test]
+fn a_page_of_two_machines_works_in_chromium() {
+    let desk = Desk::new();
+    let program = example("run-up.ngc");
+    let both = ["--from", "three-axis", "--to", "vmc", "--html", "page.html"];
+    desk.exits(1, &[&["diff", &program], &both[..]].concat());
+    works(&desk);
+}
+
+/// `page.mjs` says by itself that it skipped where Chromium or a package is not there.
+fn works(desk: &Desk) {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/html/page.mjs");
     let Ok(output) = Command::new("node")
         .arg(script)

@@ -83,6 +83,38 @@ async function links(tab, name) {
   expect((await line()) === picked[1], `${name}: a click on a peak shows another line`);
   expect((await tab.textContent("#details .source code")) === (picked[2] || "no text at hand"), `${name}: its text is not shown`);
   if (moves && bright !== null) await onPath(tab, name, place);
+  if (await tab.evaluate(() => COMPARED !== null)) await both(tab, name);
+}
+
+/** Two machines: the chart of both draws both lines, in each one's time and block by block. */
+async function both(tab, name) {
+  for (const lay of ["time", "step"]) {
+    await tab.locator("#lay").selectOption(lay);
+    const seen = await tab.evaluate(() => {
+      const { plot } = CHARTS[0];
+      const { width, height } = plot.ctx.canvas;
+      const pixels = plot.ctx.getImageData(0, 0, width, height).data;
+      const near = (colour) => {
+        const probe = document.createElement("canvas").getContext("2d");
+        probe.fillStyle = css(colour);
+        probe.fillRect(0, 0, 1, 1);
+        const own = probe.getImageData(0, 0, 1, 1).data;
+        let count = 0;
+        for (let at = 0; at < pixels.length; at += 4) {
+          if ([0, 1, 2].every((part) => Math.abs(pixels[at + part] - own[part]) < 12)) count += 1;
+        }
+        return count;
+      };
+      return [...LINES.map(near), laid().peak.length === BARS.count && !laid().peak.includes(undefined)];
+    });
+    expect(seen[0] > 20 && seen[1] > 20, `${name}: the chart of both has ${seen[0]} and ${seen[1]} pixels of its lines`);
+    expect(seen[2], `${name}: a bar has no place on the other machine`);
+  }
+  // What only one machine does is picked as well, and says so.
+  const alone = await tab.evaluate(() => DATA.worst.concat(BARS.lead).find((place) => block(place).start_s === null) ?? null);
+  if (alone === null) return;
+  await tab.evaluate((place) => pick(place, "test"), alone);
+  expect((await tab.textContent("#details")).includes("no such move"), `${name}: a move of one machine alone has figures on both`);
 }
 
 /** A click on a piece of the path picks its block. */

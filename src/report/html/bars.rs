@@ -3,8 +3,7 @@
 //! One bar a row; where there are too many, two neighbours become one as high as the
 //! higher, so that no peak is lost.
 
-use super::block::{Block, after_w, larger};
-use crate::pipeline::{Certificate, Row};
+use super::block::{Block, Passing, after_w, larger};
 
 /// Bars that are kept.
 pub(super) const BARS_MAX: usize = 4000;
@@ -44,7 +43,8 @@ pub(super) struct Bars {
 
 impl Bars {
     /// Takes the next row.
-    pub fn add(&mut self, index: u64, row: &Row) {
+    pub fn add(&mut self, next: Passing<'_>) {
+        let row = next.row;
         let from_s = row.start_after_s.unwrap_or(self.after_s);
         self.after_s = from_s + row.duration_after_s.unwrap_or(0.0);
         let after_s = [from_s, self.after_s];
@@ -52,10 +52,10 @@ impl Bars {
         if let Some(last) = self.list.last_mut()
             && last.rows < self.size
         {
-            last.take(index, row, after_s);
+            last.take(next, after_s);
             return;
         }
-        self.list.push(Bar::of(index, row, after_s));
+        self.list.push(Bar::of(next, after_s));
         if self.list.len() > BARS_MAX {
             self.halve();
         }
@@ -77,34 +77,32 @@ impl Bars {
 }
 
 impl Bar {
-    fn of(index: u64, row: &Row, after_s: [f64; 2]) -> Self {
+    fn of(only: Passing<'_>, after_s: [f64; 2]) -> Self {
+        let row = only.row;
         Self {
             rows: 1,
-            first: index,
+            first: only.index,
             span_s: [row.start_s, row.start_s + row.duration_s],
             after_s,
             most_w: [row.peak_w, row.regen_w],
             most_after_w: after_w(row),
-            bound: row.certificate == Certificate::Robust,
+            bound: only.is_bound(),
             changed: u64::from(!row.action.is_empty()),
-            lead: Block {
-                index,
-                row: row.clone(),
-            },
+            lead: only.keep(),
         }
     }
 
     /// Takes the next row.
-    fn take(&mut self, index: u64, row: &Row, after_s: [f64; 2]) {
+    fn take(&mut self, next: Passing<'_>, after_s: [f64; 2]) {
+        let row = next.row;
         self.rows += 1;
         self.span_s[1] = row.start_s + row.duration_s;
         self.after_s[1] = after_s[1];
         self.raise([row.peak_w, row.regen_w], after_w(row));
-        self.bound |= row.certificate == Certificate::Robust;
+        self.bound |= next.is_bound();
         self.changed += u64::from(!row.action.is_empty());
-        if super::block::load(row, row.peak_w, row.regen_w) > self.lead.load() {
-            self.lead.index = index;
-            self.lead.row.clone_from(row);
+        if next.weight() > self.lead.passing().weight() {
+            self.lead.replace(next);
         }
     }
 
@@ -116,7 +114,7 @@ impl Bar {
         self.raise(next.most_w, next.most_after_w);
         self.bound |= next.bound;
         self.changed += next.changed;
-        if next.lead.load() > self.lead.load() {
+        if next.lead.passing().weight() > self.lead.passing().weight() {
             self.lead = next.lead;
         }
     }

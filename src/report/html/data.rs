@@ -11,7 +11,6 @@ use super::figures;
 use super::shares::{Moment, PageSeries};
 use super::shown::Page;
 use crate::machine::{ALL_AXES, AXES, RapidPath};
-use crate::pipeline::Certificate;
 
 /// The rows that anything on the page is about, each once, by their place.
 struct Blocks<'a> {
@@ -24,8 +23,7 @@ impl<'a> Blocks<'a> {
         let rows = page.rows;
         let bars = rows.bars.list.iter().map(|bar| &bar.lead);
         let lines = rows.path.list.iter().map(|line| &line.lead);
-        let peaks = [&rows.worst, &rows.before, &rows.after];
-        let peaks = peaks.into_iter().flat_map(|peaks| &peaks.list);
+        let peaks = rows.peaks().into_iter().flat_map(|peaks| &peaks.list);
         let all: BTreeMap<u64, &Block> = bars
             .chain(lines)
             .chain(peaks)
@@ -44,7 +42,10 @@ impl<'a> Blocks<'a> {
 /// All of a page.
 pub(super) fn data(page: &Page<'_>) -> Value {
     let blocks = Blocks::of(page);
-    let worst = page.rows.worst.list.iter();
+    let places = |list: &[Block]| -> Vec<Value> {
+        let list = list.iter();
+        list.map(|block| blocks.place(block)).collect()
+    };
     let moments = |series: Option<&PageSeries>| {
         let list = series.map_or(&[][..], |series| &series.moments);
         let mut list: Vec<&Moment> = list.iter().collect();
@@ -71,7 +72,8 @@ pub(super) fn data(page: &Page<'_>) -> Value {
             "before": moments(page.before),
             "after": moments(page.after),
         },
-        "worst": worst.map(|block| blocks.place(block)).collect::<Vec<_>>(),
+        "worst": places(&page.rows.worst.list),
+        "differ": places(&page.rows.differ.list),
     })
 }
 
@@ -94,6 +96,12 @@ fn moment(page: &Page<'_>, blocks: &Blocks<'_>, moment: &Moment) -> Value {
 /// The rows, one list a figure.
 fn columns(blocks: &Blocks<'_>) -> Value {
     let each = |value: fn(&Block) -> Value| column(blocks.list.iter().map(|it| value(it)));
+    // Of a move that the first of two machines does not make nothing is known there.
+    let first = |value: fn(&Block) -> Value| {
+        let of_first = |it: &&Block| it.is_on_first().then(|| value(it));
+        let list = blocks.list.iter().copied();
+        column(list.map(|it| of_first(&it).unwrap_or_default()))
+    };
     let axes: Vec<String> = blocks
         .list
         .iter()
@@ -107,15 +115,15 @@ fn columns(blocks: &Blocks<'_>) -> Value {
         "file": words(blocks.list.iter().map(|it| it.row.file.as_str())),
         "kind": words(blocks.list.iter().map(|it| it.row.kind.name())),
         "axes": words(axes.iter().map(String::as_str)),
-        "start_s": each(|it| time(it.row.start_s)),
-        "duration_s": each(|it| drawn(it.row.duration_s)),
-        "peak_w": each(|it| drawn(it.row.peak_w)),
-        "regen_w": each(|it| drawn(it.row.regen_w)),
-        "limit_w": each(|it| drawn(it.row.limit_w)),
-        "regen_limit_w": each(|it| known(it.row.regen_limit_w, drawn)),
-        "load": each(|it| share(it.load())),
-        "energy_j": each(|it| drawn(it.row.energy_j)),
-        "bound": each(|it| (it.row.certificate == Certificate::Robust).into()),
+        "start_s": first(|it| time(it.row.start_s)),
+        "duration_s": first(|it| drawn(it.row.duration_s)),
+        "peak_w": first(|it| drawn(it.row.peak_w)),
+        "regen_w": first(|it| drawn(it.row.regen_w)),
+        "limit_w": first(|it| drawn(it.row.limit_w)),
+        "regen_limit_w": first(|it| known(it.row.regen_limit_w, drawn)),
+        "load": first(|it| share(it.passing().load())),
+        "energy_j": first(|it| drawn(it.row.energy_j)),
+        "bound": each(|it| it.passing().is_bound().into()),
         "converter": words(blocks.list.iter().map(|it| it.row.converter.as_str())),
         "action": words(blocks.list.iter().map(|it| it.row.action)),
         "words": words(blocks.list.iter().map(|it| it.row.words.as_str())),
@@ -123,7 +131,9 @@ fn columns(blocks: &Blocks<'_>) -> Value {
         "duration_after_s": each(|it| known(it.row.duration_after_s, drawn)),
         "peak_after_w": each(|it| known(it.row.peak_after_w, drawn)),
         "regen_after_w": each(|it| known(it.row.regen_after_w, drawn)),
-        "load_after": each(|it| share(it.load_after())),
+        "load_after": each(|it| share(it.passing().load_after())),
+        "limit_after_w": each(|it| known(it.other.as_ref().map(|it| it.limit_w), drawn)),
+        "converter_after": words(blocks.list.iter().map(|it| it.converter_after())),
     })
 }
 
@@ -190,11 +200,10 @@ pub(super) fn channels(page: &Page<'_>) -> Vec<String> {
 
 /// The places of these among the values of a sample.
 pub(super) fn channel_places(page: &Page<'_>) -> Vec<usize> {
-    let axes = page.machine.axis_set.iter().map(|axis| axis + 2);
-    let spindle = [AXES + 2, AXES + 3];
-    let spindle = spindle
-        .into_iter()
-        .filter(|_| page.machine.spindle.is_some());
+    let has = |axis: usize| page.machines().any(|it| it.axis_set.contains(axis));
+    let axes = (0..AXES).filter(|axis| has(*axis)).map(|axis| axis + 2);
+    let has_spindle = page.machines().any(|it| it.spindle.is_some());
+    let spindle = [AXES + 2, AXES + 3].into_iter().filter(|_| has_spindle);
     axes.chain(spindle).chain([AXES + 4]).collect()
 }
 

@@ -3,9 +3,11 @@
 use serde_json::{Value, json};
 
 use super::columns::{figure, known};
-use super::shown::{Found, Page};
+use super::shown::{Compared, Found, Page};
+use crate::machine::{Converter, Machine};
 use crate::pipeline::{Certificate, LimitSummary, OverTime, Summary, Unfit};
 use crate::power::{Measure, PowerModel};
+use crate::report::checked::Verdict;
 use crate::report::over_time;
 
 /// What is said of the program as a whole.
@@ -13,13 +15,31 @@ pub(super) fn head(page: &Page<'_>) -> Value {
     let (before, after) = match page.found {
         Found::Report(summary) => (summary, None),
         Found::Limit { summary, .. } => (&summary.before, Some(&summary.after)),
+        Found::Diff(compared) => (compared.summaries[0], Some(compared.summaries[1])),
     };
     let last = after.unwrap_or(before);
-    let limited = match page.found {
-        Found::Report(_) => None,
-        Found::Limit { summary, .. } => Some(limited(summary)),
+    let (limited, compared) = match page.found {
+        Found::Report(_) => (None, None),
+        Found::Limit { summary, .. } => (Some(limited(summary)), None),
+        Found::Diff(compared) => (None, Some(compared)),
     };
-    let notes = before.notes.iter();
+    let over_time = match compared {
+        Some(compared) => both(compared, over_time_list),
+        None => over_time_list(last, ""),
+    };
+    let notes_of = |summary: &Summary| -> Vec<String> {
+        let notes = summary.notes.iter();
+        notes.map(|note| note.message.clone()).collect()
+    };
+    let (notes, conditions) = match compared {
+        Some(Compared {
+            summaries, names, ..
+        }) => (
+            of_both(summaries.map(notes_of), names),
+            of_both(summaries.map(|it| it.conditions.clone()), names),
+        ),
+        None => (notes_of(before), last.conditions.clone()),
+    };
     json!({
         "gwatt": env!("CARGO_PKG_VERSION"),
         "program": page.program,
@@ -32,11 +52,12 @@ pub(super) fn head(page: &Page<'_>) -> Value {
         "before": summary(before),
         "after": after.map(summary),
         "limited": limited,
-        "limits": limits(page),
+        "limits": limits(page.machine),
+        "compared": compared.map(comparison),
         "helps": before.unfit.iter().chain(&before.worst).filter_map(help).collect::<Vec<_>>(),
-        "over_time": over_time_list(last),
-        "conditions": last.conditions,
-        "notes": notes.map(|note| note.message.as_str()).collect::<Vec<_>>(),
+        "over_time": over_time,
+        "conditions": conditions,
+        "notes": notes,
     })
 }
 
@@ -52,6 +73,8 @@ fn word(page: &Page<'_>) -> &'static str {
         Found::Limit { summary, .. } if summary.certified => "fits now",
         Found::Limit { partly: true, .. } => "not certified: written as far as it can be lowered",
         Found::Limit { .. } => "cannot be made to fit: nothing is written",
+        Found::Diff(compared) if ceases(compared) => "ceases to fit",
+        Found::Diff(_) => "nothing ceases to fit",
     }
 }
 
@@ -59,7 +82,50 @@ fn fits(page: &Page<'_>) -> bool {
     match page.found {
         Found::Report(summary) => summary.fits(),
         Found::Limit { summary, .. } => summary.certified,
+        Found::Diff(compared) => !ceases(compared),
     }
+}
+
+fn ceases(compared: Compared<'_>) -> bool {
+    compared.comparison.verdict() != Verdict::Fits
+}
+
+/// What a page of two machines has besides: the figures of the comparison, and what the second
+/// machine bears.
+fn comparison(compared: Compared<'_>) -> Value {
+    let Compared {
+        other, comparison, ..
+    } = compared;
+    let [begin, cease] = comparison.limit_changes();
+    json!({
+        "names": compared.names,
+        "machine": other.name,
+        "controller": other.controller.language.name,
+        "begin": comparison.begin,
+        "cease": comparison.cease,
+        "limits_begin": begin,
+        "limits_cease": cease,
+        "limits": limits(other),
+    })
+}
+
+/// What is said of each of two machines, with its name.
+fn both(compared: Compared<'_>, list: fn(&Summary, &str) -> Vec<Value>) -> Vec<Value> {
+    let all = compared.summaries.into_iter().zip(compared.names);
+    all.flat_map(|(summary, name)| list(summary, name))
+        .collect()
+}
+
+/// What is said of both machines, then what is said of one, with its name.
+fn of_both(lists: [Vec<String>; 2], names: [&str; 2]) -> Vec<String> {
+    let [first, second] = &lists;
+    let shared = first.iter().filter(|it| second.contains(it)).cloned();
+    let mut list: Vec<String> = shared.collect();
+    for (own, other, name) in [(first, second, names[0]), (second, first, names[1])] {
+        let alone = own.iter().filter(|it| !other.contains(it));
+        list.extend(alone.map(|it| format!("{name}: {it}")));
+    }
+    list
 }
 
 fn limited(summary: &LimitSummary) -> Value {
@@ -85,10 +151,10 @@ fn summary(summary: &Summary) -> Value {
 }
 
 /// What each converter bears.
-fn limits(page: &Page<'_>) -> Vec<Value> {
-    let model = PowerModel::new(page.machine);
-    let converters = page.machine.converters.iter().enumerate();
-    let limit = |(index, it): (usize, &crate::machine::Converter)| {
+fn limits(machine: &Machine) -> Vec<Value> {
+    let model = PowerModel::new(machine);
+    let converters = machine.converters.iter().enumerate();
+    let limit = |(index, it): (usize, &Converter)| {
         let overload = it.ratings.overload.iter();
         json!({
             "name": it.name,
@@ -96,7 +162,7 @@ fn limits(page: &Page<'_>) -> Vec<Value> {
             "peak_power_w": figure(it.peak_power_w),
             "regen_limit_w": known(model.regen_limit_w(index), figure),
             "credit_regen": it.credit_regen,
-            "margin": figure(page.machine.limits.margin),
+            "margin": figure(machine.limits.margin),
             "overload_w": overload.map(|it| figure(it.power_w)).collect::<Vec<_>>(),
             "continuous_w": known(it.ratings.continuous.map(|it| it.power_w), figure),
         })
@@ -110,13 +176,15 @@ fn help(unfit: &Unfit) -> Option<Value> {
     said.then(|| json!([unfit.line, unfit.help]))
 }
 
-fn over_time_list(summary: &Summary) -> Vec<Value> {
+/// What is said of limits over time; `machine` is the name of the machine, where there are two.
+fn over_time_list(summary: &Summary, machine: &str) -> Vec<Value> {
     let item = |found: &OverTime| {
         let above_w = match found.rating.measure {
             Measure::Overload { above_w, .. } => Some(above_w),
             _ => None,
         };
         json!({
+            "machine": machine,
             "title": found.title(),
             "figures": over_time::figures(&found.rating),
             "fits": found.rating.fits(),

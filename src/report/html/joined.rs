@@ -86,6 +86,7 @@ fn distance(cell: Cell, [from, to]: [Cell; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::block::Passing;
     use super::super::path::{LINES_MAX, Path};
     use crate::pipeline::Route;
     use crate::report::record::example;
@@ -110,7 +111,11 @@ mod tests {
                 arc: None,
             });
             row.peak_w = f64::from(step);
-            path.add(u64::from(step), &row);
+            path.add(Passing {
+                index: u64::from(step),
+                row: &row,
+                other: None,
+            });
         }
         assert!(path.list.len() <= LINES_MAX);
         assert!(path.error_mm() < 2.0, "{}", path.error_mm());

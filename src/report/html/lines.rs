@@ -35,8 +35,7 @@ impl LineTexts {
         };
         rows.bars.list.iter().for_each(|bar| want(&bar.lead.row));
         rows.path.list.iter().for_each(|line| want(&line.lead.row));
-        let peaks = [&rows.worst, &rows.before, &rows.after];
-        let peaks = peaks.into_iter().flat_map(|peaks| &peaks.list);
+        let peaks = rows.peaks().into_iter().flat_map(|peaks| &peaks.list);
         peaks.for_each(|block| want(&block.row));
         let over_time = summaries.iter().flat_map(|summary| &summary.over_time);
         let over_time = over_time.filter(|it| it.file.is_empty() && it.rating.line > 0);

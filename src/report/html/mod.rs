@@ -24,4 +24,4 @@ mod shown;
 pub use lines::LineTexts;
 pub use rows::PageRows;
 pub use shares::{PageSeries, Side};
-pub use shown::{Found, Page};
+pub use shown::{Compared, Found, Page};

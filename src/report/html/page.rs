@@ -20,9 +20,10 @@ const LICENCES: [&str; 4] = [
     "\nthree.js\n\n",
     include_str!("vendor/three.LICENSE"),
 ];
-const SCRIPTS: [&str; 5] = [
+const SCRIPTS: [&str; 6] = [
     include_str!("page/data.js"),
     include_str!("page/charts.js"),
+    include_str!("page/overlay.js"),
     include_str!("page/space.js"),
     include_str!("page/tables.js"),
     include_str!("page/page.js"),

@@ -9,11 +9,11 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use super::block::{Block, load};
+use super::block::{Block, Passing};
 use super::cell::{Cell, Line};
 use super::joined::joined;
 use crate::interpret::Arc;
-use crate::pipeline::{Route, Row};
+use crate::pipeline::Route;
 
 /// Lines that are kept.
 pub(super) const LINES_MAX: usize = 10_000;
@@ -68,7 +68,8 @@ impl Path {
     }
 
     /// Takes the next row.
-    pub fn add(&mut self, index: u64, row: &Row) {
+    pub fn add(&mut self, next: Passing<'_>) {
+        let row = next.row;
         let Some(route) = &row.route else {
             self.unknown += u64::from(!row.axes.is_empty());
             return;
@@ -79,14 +80,14 @@ impl Path {
             let to = xyz(&route.end);
             // What turns alone moves nothing in space.
             if from != to {
-                self.line(index, row, [from, to]);
+                self.line(next, [from, to]);
             }
             return;
         };
         let chords = self.chords(arc);
         for chord in 1..=chords as u32 {
             let to = point(route, arc, f64::from(chord) / chords);
-            self.line(index, row, [from, to]);
+            self.line(next, [from, to]);
             from = to;
         }
     }
@@ -104,26 +105,25 @@ impl Path {
         chords
     }
 
-    fn line(&mut self, index: u64, row: &Row, ends: [[f64; 3]; 2]) {
+    fn line(&mut self, next: Passing<'_>, ends: [[f64; 3]; 2]) {
         let shift = self.doubled;
         let ends = ends.map(|point| point.map(|at| (libm::floor(at / CELL_MM) as i64) >> shift));
         if ends[0] == ends[1] {
             // It goes with the line that it lies at the end of.
             if let Some(last) = self.list.last_mut() {
-                last.raise_row(index, row);
+                last.raise_row(next);
             }
             return;
         }
         match self.places.entry(key(ends)) {
             Entry::Occupied(place) => {
                 if let Some(own) = self.list.get_mut(*place.get()) {
-                    own.raise_row(index, row);
+                    own.raise_row(next);
                 }
             }
             Entry::Vacant(place) => {
                 place.insert(self.list.len());
-                let row = row.clone();
-                let lead = Block { index, row };
+                let lead = next.keep();
                 let apart_mm = 0.0;
                 self.list.push(Line {
                     ends,
@@ -182,16 +182,15 @@ impl Path {
 }
 
 impl Line {
-    fn raise_row(&mut self, index: u64, row: &Row) {
-        if load(row, row.peak_w, row.regen_w) > self.lead.load() {
-            self.lead.index = index;
-            self.lead.row.clone_from(row);
+    fn raise_row(&mut self, next: Passing<'_>) {
+        if next.weight() > self.lead.passing().weight() {
+            self.lead.replace(next);
         }
     }
 
     /// Takes what another row asks for.
     pub fn raise(&mut self, other: Block) {
-        if other.load() > self.lead.load() {
+        if other.passing().weight() > self.lead.passing().weight() {
             self.lead = other;
         }
     }

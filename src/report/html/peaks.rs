@@ -1,19 +1,18 @@
 //! The largest of all rows, one for each line.
 
-use super::block::Block;
-use crate::pipeline::Row;
+use super::block::{Block, Passing};
 
 /// Rows in the order of a figure, the largest first.
 #[derive(Debug)]
 pub(super) struct Peaks {
     pub list: Vec<Block>,
     most: usize,
-    figure: fn(&Row) -> f64,
+    figure: fn(Passing<'_>) -> f64,
 }
 
 impl Peaks {
     /// Keeps `most` rows by `figure`.
-    pub fn new(most: usize, figure: fn(&Row) -> f64) -> Self {
+    pub fn new(most: usize, figure: fn(Passing<'_>) -> f64) -> Self {
         Self {
             list: Vec::with_capacity(most + 1),
             most,
@@ -22,13 +21,14 @@ impl Peaks {
     }
 
     /// Takes the next row.
-    pub fn add(&mut self, index: u64, row: &Row) {
-        let value = (self.figure)(row);
+    pub fn add(&mut self, next: Passing<'_>) {
+        let row = next.row;
+        let value = (self.figure)(next);
         let full = self.list.len() >= self.most;
         let least = self
             .list
             .last()
-            .map_or(0.0, |last| (self.figure)(&last.row));
+            .map_or(0.0, |last| (self.figure)(last.passing()));
         if value <= 0.0 || full && value <= least {
             return;
         }
@@ -37,7 +37,7 @@ impl Peaks {
             if self
                 .list
                 .get(place)
-                .is_some_and(|known| (self.figure)(&known.row) >= value)
+                .is_some_and(|known| (self.figure)(known.passing()) >= value)
             {
                 return;
             }
@@ -45,9 +45,8 @@ impl Peaks {
         }
         let place = self
             .list
-            .partition_point(|block| (self.figure)(&block.row) >= value);
-        let row = row.clone();
-        self.list.insert(place, Block { index, row });
+            .partition_point(|block| (self.figure)(block.passing()) >= value);
+        self.list.insert(place, next.keep());
         self.list.truncate(self.most);
     }
 }

@@ -47,7 +47,7 @@ pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
         peaks
     };
     let mut panels = vec![("Bus power", of(0), page.before)];
-    if page.is_limited() {
+    if page.has_two() {
         panels[0].0 = "Before";
         panels.push(("After", of(1), page.after));
     }

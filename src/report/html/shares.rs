@@ -23,7 +23,7 @@ const ROUNDING_S: f64 = 1e-9;
 pub enum Side {
     /// As it is.
     Before,
-    /// As it was written.
+    /// As it was written, or on the second machine.
     After,
 }
 
@@ -210,11 +210,16 @@ fn moments(machine: &Machine, rows: &PageRows, side: Side) -> Vec<Moment> {
     let moment = |block: &Block| {
         let row = &block.row;
         let (peak_w, from_s, lasts_s) = match side {
+            Side::Before if !block.is_on_first() => return None,
             Side::Before => (row.peak_w, row.start_s, row.duration_s),
             Side::After => (row.peak_after_w?, row.start_after_s?, row.duration_after_s?),
         };
+        let name = match (side, &block.other) {
+            (Side::After, Some(other)) => &other.converter,
+            _ => &row.converter,
+        };
         let names = machine.converters.iter();
-        let converter = names.map(|it| &it.name).position(|it| *it == row.converter);
+        let converter = names.map(|it| &it.name).position(|it| it == name);
         Some(Moment {
             block: block.clone(),
             peak_w,

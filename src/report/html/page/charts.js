@@ -6,7 +6,7 @@ const css = (name) => getComputedStyle(document.documentElement).getPropertyValu
 /** The same range of power in all charts, W. */
 function range() {
   const known = (list) => list.filter((value) => value !== null);
-  const limits = HEAD.limits.flatMap((it) => [it.limit_w ?? 0, -(it.regen_limit_w ?? 0)]);
+  const limits = SIDES.flatMap((which) => which.limits).flatMap((it) => [it.limit_w ?? 0, -(it.regen_limit_w ?? 0)]);
   let [least, most] = [Math.min(0, ...limits), Math.max(1, ...limits)];
   for (const which of SIDES) {
     for (const value of known(which.peak)) most = Math.max(most, value);
@@ -64,10 +64,15 @@ function draw(plot, which) {
   const x = (seconds) => plot.valToPos(seconds, "x", true);
   const y = (value) => plot.valToPos(value, "y", true);
   mark(ctx, which, x, top, high);
-  if (which.shares) areas(ctx, which.shares, plot.scales.x, x, y);
+  if (which.overlay && !IN_STEP) mark(ctx, SIDES[1], x, top, high);
+  if (which.shares && !which.overlay) areas(ctx, which.shares, plot.scales.x, x, y);
   line(ctx, [left, left + width], y(0), css("--quiet"), []);
-  outline(ctx, which, plot.scales.x, x, y);
-  limits(ctx, [left, left + width], y);
+  if (which.overlay) {
+    overlay(ctx, [left, left + width], plot.scales.x, x, y);
+  } else {
+    outline(ctx, which, plot.scales.x, x, y);
+    limits(ctx, which, [left, left + width], y);
+  }
   ctx.restore();
 }
 
@@ -97,31 +102,33 @@ function line(ctx, [from, to], y, colour, dash) {
 }
 
 /** The limits with the margin taken off, and the powers that are permitted for a time. */
-function limits(ctx, ends, y) {
+function limits(ctx, which, ends, y, colour = "--limit", left = false) {
   const label = (text, at) => {
     ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
-    ctx.textAlign = "right";
-    const place = [text, ends[1] - 6 * devicePixelRatio, at - 5 * devicePixelRatio];
+    ctx.textAlign = left ? "left" : "right";
+    const edge = left ? ends[0] + 6 * devicePixelRatio : ends[1] - 6 * devicePixelRatio;
+    const place = [text, edge, at - 5 * devicePixelRatio];
     ctx.strokeStyle = css("--card");
     ctx.lineWidth = 4 * devicePixelRatio;
     ctx.strokeText(...place);
-    ctx.fillStyle = css("--limit");
+    ctx.fillStyle = css(colour);
     ctx.fillText(...place);
   };
-  for (const limit of HEAD.limits) {
+  for (const limit of which.limits) {
     const name = limit.name ? ` ${limit.name}` : "";
     const margin = limit.margin > 0 ? `, ${percent(limit.margin)} margin` : "";
     if (limit.limit_w !== null) {
-      line(ctx, ends, y(limit.limit_w), css("--limit"), [7, 4]);
+      line(ctx, ends, y(limit.limit_w), css(colour), [7, 4]);
       label(`limit${name} ${power(limit.limit_w)}${margin}`, y(limit.limit_w));
     }
     if (limit.regen_limit_w !== null) {
-      line(ctx, ends, y(-limit.regen_limit_w), css("--limit"), [7, 4]);
+      line(ctx, ends, y(-limit.regen_limit_w), css(colour), [7, 4]);
       label(`fed back${name} ${power(limit.regen_limit_w)}`, y(-limit.regen_limit_w));
     }
   }
   for (const found of HEAD.over_time) {
-    if (found.above_w !== null) line(ctx, ends, y(found.above_w), css("--limit"), [2, 5]);
+    if (COMPARED && found.machine !== COMPARED.names[which.name === "after" ? 1 : 0]) continue;
+    if (found.above_w !== null) line(ctx, ends, y(found.above_w), css(colour), [2, 5]);
   }
 }
 
@@ -162,7 +169,7 @@ function areas(ctx, shares, visible, x, y) {
 }
 
 /** The peak of each block; bounds are dashed. */
-function outline(ctx, which, visible, x, y) {
+function outline(ctx, which, visible, x, y, colour = "--ink") {
   const first = Math.max(0, above(which.to, visible.min) - 2);
   const last = Math.min(BARS.count, above(which.from, visible.max) + 2);
   const top = y(range()[1]);
@@ -177,7 +184,7 @@ function outline(ctx, which, visible, x, y) {
         ctx.beginPath();
         ctx.setLineDash(dashed ? [4 * devicePixelRatio, 3 * devicePixelRatio] : []);
         ctx.lineWidth = 1.5 * devicePixelRatio;
-        ctx.strokeStyle = css("--ink");
+        ctx.strokeStyle = css(colour);
         bound = dashed;
         if (place > first) ctx.moveTo(x(which.from[place]), y(sign * (list[place - 1] ?? 0)));
       }
@@ -206,17 +213,25 @@ function nearest(plot, which, left) {
   return best === null ? null : best.place;
 }
 
-function hover(plot, which) {
-  const { left } = plot.cursor;
+/** The bar under a point of a chart, with the side that it is of. */
+function under(plot, which, left, top) {
+  if (which.overlay) return nearestOfBoth(plot, left, top);
+  const place = nearest(plot, which, left);
+  return place === null ? null : { which, place };
+}
+
+function hover(plot, shown) {
+  const { left, top } = plot.cursor;
   const tip = plot.over.querySelector(".tip") ?? plot.over.appendChild(make("div", { class: "tip" }));
-  const place = left >= 0 ? nearest(plot, which, left) : null;
-  tip.hidden = place === null;
-  if (place === null) return;
+  const found = left >= 0 ? under(plot, shown, left, top) : null;
+  tip.hidden = found === null;
+  if (found === null) return;
+  const { which, place } = found;
   const own = block(BARS.lead[which.bar[place]]);
   const rows = at(BARS.rows, which.bar[place]);
   const more = rows > 1 ? ` and ${rows - 1} more` : "";
   tip.replaceChildren(
-    make("strong", {}, `${power(which.peak[place])}`), ` at ${moment(plot.posToVal(left, "x"))}`,
+    make("strong", {}, `${shown.overlay ? `${which.title}: ` : ""}${power(which.peak[place])}`), ` at ${moment(plot.posToVal(left, "x"))}`,
     make("br"), `${own.where}${more}`, make("br"), make("code", {}, own.text),
   );
   const right = left > plot.over.clientWidth / 2;
@@ -230,14 +245,15 @@ function click(plot, which) {
   plot.over.addEventListener("pointerdown", (event) => { from = event.clientX; });
   plot.over.addEventListener("pointerup", (event) => {
     if (from === null || Math.abs(event.clientX - from) > 4) return;
-    const place = nearest(plot, which, event.clientX - plot.over.getBoundingClientRect().left);
-    if (place !== null) pick(BARS.lead[which.bar[place]], "chart");
+    const box = plot.over.getBoundingClientRect();
+    const found = under(plot, which, event.clientX - box.left, event.clientY - box.top);
+    if (found) pick(BARS.lead[found.which.bar[found.place]], "chart");
   });
 }
 
 /** The same moment in another program. */
 function moved(seconds, from, to) {
-  if (from === to || BARS.count === 0) return seconds;
+  if (from.name === to.name || BARS.count === 0) return seconds;
   const place = Math.min(BARS.count - 1, Math.max(0, above(from.from, seconds) - 1));
   const lasts = from.to[place] - from.from[place];
   const share = lasts > 0 ? Math.min(1, Math.max(0, (seconds - from.from[place]) / lasts)) : 0;
@@ -262,19 +278,22 @@ function zoom(ends, which) {
 
 /** Shows the block that is picked with what is next to it. */
 function near() {
-  const [first] = CHARTS;
-  const when = PICKED === null ? null : span(block(PICKED), first.which);
-  if (!when) return;
+  const own = PICKED === null ? null : block(PICKED);
+  const first = own && CHARTS.find((it) => span(own, it.which));
+  if (!first) return;
+  const when = span(own, first.which);
   const room = Math.max(0.75 * (when[1] - when[0]), 1e-3 * first.end, 0.05);
   zoom([Math.max(0, when[0] - room), when[1] + room], first.which);
 }
 
 function drawCharts() {
   const charts = element("charts");
+  if (COMPARED) drawOverlay(charts);
   for (const which of SIDES) {
     const figures = which.figures;
     const heading = which.title ? make("h3", {}, which.title, make("span", {}, ` peak ${power(figures.peak_w)}, ${duration(figures.duration_s)}`)) : "";
-    const label = `Power over time${which.title ? `, ${which.title.toLowerCase()} limiting` : ""}: peak ${power(figures.peak_w)}, ${duration(figures.duration_s)}`;
+    const name = COMPARED ? `, ${which.title}` : which.title ? `, ${which.title.toLowerCase()} limiting` : "";
+    const label = `Power over time${name}: peak ${power(figures.peak_w)}, ${duration(figures.duration_s)}`;
     const box = make("div", { class: "chart", role: "img", "aria-label": label });
     charts.append(heading, box);
     CHARTS.push(chart(which, box));

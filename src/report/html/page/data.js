@@ -2,7 +2,13 @@
 "use strict";
 const DATA = JSON.parse(document.getElementById("data").textContent);
 const { head: HEAD, blocks: BLOCKS, bars: BARS, path: PATH, channels: CHANNELS } = DATA;
-const LIMITED = HEAD.after !== null;
+const LIMITED = HEAD.limited !== null;
+/** Two machines, with their names, or null. */
+const COMPARED = HEAD.compared;
+const TWO = LIMITED || COMPARED !== null;
+/** What the two sides are called, and the second one at the end of a name. */
+const TITLES = COMPARED ? [`From ${COMPARED.names[0]}`, `To ${COMPARED.names[1]}`] : ["Before", "After"];
+const LATER = COMPARED ? `on ${COMPARED.names[1]}` : "after";
 const COLOURS = {
   X: "#4269d0", Y: "#e3891b", Z: "#3a9d5d", A: "#c4457a", B: "#7a5ac2", C: "#1c9aa8", U: "#a0673a",
   V: "#6b8e23", W: "#b8860b", E: "#2f7f6f", spindle: "#8f6bb8", cutting: "#d65f4d", "base load": "#9a9a9a",
@@ -104,7 +110,8 @@ function side(name) {
   };
   const own = {
     name,
-    title: LIMITED ? (after ? "After" : "Before") : "",
+    title: TWO ? TITLES[after ? 1 : 0] : "",
+    limits: after && COMPARED ? COMPARED.limits : HEAD.limits,
     figures: after ? HEAD.after : HEAD.before,
     bar,
     from: sorted("from_s", "from_after_s"),
@@ -122,7 +129,7 @@ function side(name) {
   return own;
 }
 
-const SIDES = LIMITED ? [side("before"), side("after")] : [side("before")];
+const SIDES = TWO ? [side("before"), side("after")] : [side("before")];
 
 /** When a block runs in one of the programs, or null. */
 function span(own, which) {

@@ -12,9 +12,10 @@ function ramp(load) {
 
 /** By what the path may be coloured. */
 const PAINTS = [
-  { name: LIMITED ? "power before" : "power", of: (place) => ramp(at(BLOCKS.load, place)) },
-  LIMITED && { name: "power after", of: (place) => ramp(at(BLOCKS.load_after, place)) },
+  { name: COMPARED ? `power on ${COMPARED.names[0]}` : LIMITED ? "power before" : "power", of: (place) => ramp(at(BLOCKS.load, place)) },
+  TWO && { name: COMPARED ? `power on ${COMPARED.names[1]}` : "power after", of: (place) => ramp(at(BLOCKS.load_after, place)) },
   LIMITED && { name: "what was changed", of: (place) => new THREE.Color(at(BLOCKS.action, place) ? css("--changed") : css("--faint")) },
+  COMPARED && { name: "what begins or ceases to fit", of: (place) => new THREE.Color(css({ "begins to fit": "--good", "ceases to fit": "--changed" }[at(BLOCKS.action, place)] ?? "--faint")) },
   { name: "rapids and feeds", of: (place) => new THREE.Color(at(BLOCKS.kind, place) === "rapid" ? "#e3891b" : "#4269d0") },
 ].filter(Boolean);
 

@@ -19,11 +19,39 @@ function picker(own) {
   return button;
 }
 
+const tile = (name, value, ...more) => make("div", {}, make("dt", {}, name), make("dd", {}, make("strong", {}, value), ...more));
+
+/** The figures of two machines, as in the text of the comparison. */
+function compared() {
+  const { before, after } = HEAD;
+  const pair = (print, figure) => `${print(before[figure])} → ${print(after[figure])}`;
+  const share = (which) => {
+    const [limit] = which.limits;
+    const one = which.limits.length === 1 && limit.limit_w !== null;
+    return one ? `${rough(which.figures.peak_w / limit.limit_w)} of ${power(limit.limit_w)}` : power(which.figures.peak_w);
+  };
+  const joule = (value) => (value === null ? "not known" : scaled(value, "J"));
+  const more = after.duration_s - before.duration_s;
+  const part = before.duration_s > 0 ? ` (${((100 * more) / before.duration_s).toFixed(2)} %)` : "";
+  const back = SIDES.map((which) => DATA.shares[which.name]).map((it) => (it ? joule(it.fed_back_j) : "not known"));
+  const over = (count) => (count > 0 ? make("small", {}, ` moves, and ${count} limits over time`) : make("small", {}, " moves"));
+  element("tiles").className = "pairs";
+  element("tiles").append(
+    tile("Peak", pair(power, "peak_w"), make("small", {}, SIDES.map(share).join(" → "))),
+    tile("Time", pair(duration, "duration_s"), make("small", {}, `${more >= 0 ? "" : "−"}${duration(Math.abs(more))} ${more >= 0 ? "longer" : "shorter"}${part}`)),
+    tile("Energy drawn", pair(joule, "energy_j"), make("small", {}, pair(energy, "energy_j"))),
+    tile("Fed back", back.join(" → "), make("small", {}, `peak ${pair(power, "regen_w")}`)),
+    tile("Over the limit", pair(String, "unfit_count"), make("small", {}, ` of ${before.moves} → ${after.moves} moves`)),
+    tile("Begin to fit", `${COMPARED.begin}`, over(COMPARED.limits_begin)),
+    tile("Cease to fit", `${COMPARED.cease}`, over(COMPARED.limits_cease)),
+  );
+}
+
 function tiles() {
   const { before, after } = HEAD;
   const last = after ?? before;
+  if (COMPARED) return compared();
   const was = (text) => (after ? make("small", {}, ` before: ${text}`) : "");
-  const tile = (name, value, ...more) => make("div", {}, make("dt", {}, name), make("dd", {}, make("strong", {}, value), ...more));
   const [limit] = HEAD.limits;
   const one = HEAD.limits.length === 1 && limit.limit_w !== null;
   const of = one ? make("small", {}, ` of ${power(limit.limit_w)} (${rough(last.peak_w / limit.limit_w)})`) : "";
@@ -37,7 +65,7 @@ function tiles() {
     tile("Time", duration(last.duration_s), after ? make("small", {}, ` ${lost >= 0 ? "" : "−"}${duration(Math.abs(lost))} ${lost >= 0 ? "lost" : "gained"}${share}`) : ""),
     tile("Energy drawn", energy(last.energy_j), after && before.energy_j !== null ? was(energy(before.energy_j)) : ""),
     tile("Fed back", back ? energy(back.fed_back_j) : "not known", make("small", {}, ` ${fate}; peak ${power(last.regen_w)}`)),
-    tile(after ? "Over the limit" : "Over the limit", `${last.unfit_count}`, make("small", {}, ` of ${last.moves} moves`), was(`${before.unfit_count}`)),
+    tile("Over the limit", `${last.unfit_count}`, make("small", {}, ` of ${last.moves} moves`), was(`${before.unfit_count}`)),
   ];
   if (HEAD.limited) list.push(tile("Changed", `${HEAD.limited.edited_lines}`, make("small", {}, " lines of the program")));
   element("tiles").append(...list);
@@ -70,8 +98,8 @@ function peakTables() {
 
 /** The blocks that take most of their limits. */
 function worstTable() {
-  const names = LIMITED
-    ? ["Block", "Text", "Move", "Peak", "after", "Load", "after", "Time", "after", "What was done"]
+  const names = TWO
+    ? ["Block", "Text", "Move", "Peak", LATER, "Load", LATER, "Time", LATER, COMPARED ? "What changes" : "What was done"]
     : ["Block", "Text", "Move", "Peak", "Fed back", "Load", "Time", "Energy", "What helps"];
   const load = (value, plain) => {
     const over = value === null || value > 1.000001;
@@ -80,15 +108,24 @@ function worstTable() {
   };
   const number = (text) => make("td", { class: "number" }, text);
   const unknown = (value, print) => number(value === null ? "–" : print(value));
-  const rows = DATA.worst.map((place) => {
+  const row = (place) => {
     const own = block(place);
-    const cells = LIMITED
-      ? [number(power(own.peak_w)), unknown(own.peak_after_w, power), load(own.load), load(own.load_after, true), number(duration(own.duration_s)), unknown(own.duration_after_s, duration)]
+    const first = own.start_s !== null;
+    const loads = COMPARED ? [first ? load(own.load) : number("–"), own.peak_after_w === null ? number("–") : load(own.load_after)] : [load(own.load), load(own.load_after, true)];
+    const cells = TWO
+      ? [unknown(own.peak_w, power), unknown(own.peak_after_w, power), ...loads, first ? number(duration(own.duration_s)) : number("–"), unknown(own.duration_after_s, duration)]
       : [number(power(own.peak_w)), number(power(own.regen_w)), load(own.load), number(duration(own.duration_s)), number(energy(own.energy_j))];
-    const row = make("tr", {}, make("th", { scope: "row" }, picker(own)), make("td", {}, make("code", {}, own.text)), make("td", {}, `${own.kind} ${own.axes}`), ...cells, make("td", { class: "words" }, LIMITED ? done(own) : own.help));
+    const row = make("tr", {}, make("th", { scope: "row" }, picker(own)), make("td", {}, make("code", {}, own.text)), make("td", {}, `${own.kind} ${own.axes}`), ...cells, make("td", { class: "words" }, TWO ? done(own) : own.help));
     row.dataset.block = own.place;
     return row;
-  });
+  };
+  if (DATA.differ.length > 0) {
+    const count = COMPARED.begin + COMPARED.cease;
+    const rows = DATA.differ.map(row);
+    const caption = count > rows.length ? `The ${rows.length} lines of most load of ${count} moves that fit on one machine only` : "Lines with moves that fit on one machine only";
+    element("worst-table").append(table(caption, names, rows));
+  }
+  const rows = DATA.worst.map(row);
   const caption = HEAD.rows > rows.length ? `The ${rows.length} lines nearest to the limit, of ${HEAD.rows} moves` : "All lines, the one nearest to the limit first";
   element("worst-table").append(table(caption, names, rows));
 }
@@ -103,7 +140,7 @@ function overTime() {
   if (HEAD.over_time.length === 0) return;
   element("over-time").hidden = false;
   const rows = HEAD.over_time.map((it) => make("tr", {},
-    make("th", { scope: "row" }, it.title), make("td", { class: "number" }, it.figures),
+    make("th", { scope: "row" }, it.machine ? `${it.machine}: ${it.title}` : it.title), make("td", { class: "number" }, it.figures),
     make("td", { class: it.fits ? "" : "over" }, it.fits ? "kept" : "missed"),
     make("td", {}, it.line > 0 ? `line ${it.line} at ${moment(it.time_s)}` : ""), make("td", {}, make("code", {}, TEXTS.get(it.line) ?? "")), make("td", {}, it.help)));
   element("over-time-table").append(table("Limits over time", ["Limit", "Value", "", "Where", "Text", "What helps"], rows));
@@ -113,22 +150,32 @@ function overTime() {
 function details(own) {
   const box = element("details");
   if (!own) return box.replaceChildren(make("p", { class: "hint" }, "Click a peak, a piece of the path or a line of a table."));
-  const fact = (name, ...value) => make("div", { class: name === "Helps" || name === "Done" ? "wide-fact" : null }, make("dt", {}, name), make("dd", {}, ...value));
+  const fact = (name, ...value) => make("div", { class: ["Helps", "Done", "Changes"].includes(name) ? "wide-fact" : null }, make("dt", {}, name), make("dd", {}, ...value));
   const bar = barOf(own.row);
   const shared = at(BARS.rows, bar) > 1 ? `one of ${at(BARS.rows, bar)} moves in this bar` : "";
   const about = [`${own.kind} ${own.axes}`.trim(), own.run > 1 ? `run ${own.run}` : "", own.bound ? "bound: corners are not modelled" : "", own.converter, shared].filter(Boolean).join(" · ");
-  const facts = [
-    fact("Peak", power(own.peak_w), make("small", {}, own.limit_w === null ? "" : ` of ${power(own.limit_w)}`)),
-    fact("Load", own.load === null ? "not known" : rough(own.load)),
-    fact("Fed back", power(own.regen_w)),
-    fact("Time", duration(own.duration_s), make("small", {}, ` from ${moment(own.start_s)}`)),
-    fact("Energy", energy(own.energy_j)),
-  ];
-  if (LIMITED && own.peak_after_w !== null) {
-    facts.push(fact("Peak after", power(own.peak_after_w)), fact("Time after", duration(own.duration_after_s)));
+  const of = (limit) => make("small", {}, limit === null || limit === undefined ? "" : ` of ${power(limit)}`);
+  const here = own.start_s !== null;
+  const there = TWO && own.peak_after_w !== null;
+  const first = COMPARED ? ` on ${COMPARED.names[0]}` : "";
+  const facts = here
+    ? [
+      fact(`Peak${first}`, power(own.peak_w), of(own.limit_w)),
+      fact("Load", own.load === null ? "not known" : rough(own.load)),
+      fact("Fed back", power(own.regen_w)),
+      fact("Time", duration(own.duration_s), make("small", {}, ` from ${moment(own.start_s)}`)),
+      fact("Energy", energy(own.energy_j)),
+    ]
+    : [fact(`Peak${first}`, "no such move")];
+  if (there) {
+    facts.push(fact(`Peak ${LATER}`, power(own.peak_after_w), COMPARED ? of(own.limit_after_w) : ""));
+    if (COMPARED) facts.push(fact("Load", own.load_after === null ? "not known" : rough(own.load_after)), fact("Fed back", power(own.regen_after_w)));
+    facts.push(fact(COMPARED ? "Time" : "Time after", duration(own.duration_after_s), COMPARED ? make("small", {}, ` from ${moment(own.start_after_s)}`) : ""));
+  } else if (COMPARED) {
+    facts.push(fact(`Peak ${LATER}`, "no such move"));
   }
-  const what = LIMITED ? done(own) : own.help;
-  if (what) facts.push(fact(LIMITED ? "Done" : "Helps", what));
+  const what = TWO ? done(own) : own.help;
+  if (what) facts.push(fact(COMPARED ? "Changes" : LIMITED ? "Done" : "Helps", what));
   box.replaceChildren(
     make("p", { class: "source" }, make("span", {}, own.where), make("code", {}, own.text || "no text at hand")),
     make("p", { class: "hint" }, about), make("dl", { class: "facts" }, ...facts), ...SIDES.map((which) => strip(own, which)).filter(Boolean),
