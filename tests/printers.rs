@@ -327,6 +327,35 @@ fn heaters_and_fans() {
     assert_snapshot!(run(&bare, "M104 S200\nM109 S0\n"), @"note heaters");
 }
 
+/// Where all words switch by their value no other word is needed to switch off.
+#[test]
+fn heaters_follow_their_target() {
+    let text = |controller: &str, load: &str| {
+        format!(
+            "schema = 1\nname = \"t\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e5\n\
+             [axes.X]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10\n[[load]]\n{load}\npower_w = 40\n"
+        )
+    };
+    let heater = text("marlin", "on = [\"M104\", \"M109\"]");
+    assert_snapshot!(run(&load(&heater), "M104 S200\nG1 X1 F60\nM104 S0\nG1 X2\nM109 R180\nG1 X3\n"), @r"
+    2 feed X0.000>1.000 v1.000 loads 001
+    4 feed X1.000>2.000 v1.000
+    6 feed X2.000>3.000 v1.000 loads 001
+    ");
+    // Elsewhere, and with words that only switch on, something must switch it off.
+    for file in [
+        text("fanuc", "on = \"M104\""),
+        text("marlin", "on = [\"M104\", \"M80\"]"),
+    ] {
+        let (errors, missing) = (
+            Machine::from_toml("test.toml", &file),
+            "`off` is missing in `load`",
+        );
+        let errors = errors.expect_err("nothing switches it off");
+        assert!(errors.iter().any(|it| it.message == missing), "{errors:?}");
+    }
+}
+
 /// Marlin M92: what the program states is taken for true, but not two values.
 #[test]
 fn steps_per_unit() {

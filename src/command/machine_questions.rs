@@ -69,7 +69,7 @@ pub fn ask(mut args: NewArgs, answers: &mut impl Answers) -> Result<NewArgs> {
         args.supply = Some(watts(answers, question, false)?.unwrap_or_default());
     }
     if args.feeds_back.is_none() {
-        let question = "What it takes back, in W (0 for a plain power supply; empty: not known)";
+        let question = "What it takes back, in W (empty: not checked, as for small drives)";
         args.feeds_back = watts(answers, question, true)?;
     }
     if args.base_load.is_none() {

@@ -88,7 +88,14 @@ fn with_a_file_the_sum_is_shown() {
     let shop = Shop::new();
     let arguments = [
         &MILL[..],
-        &["-o", "mill.toml", "--feeds-back", "0", "--base-load", "100"],
+        &[
+            "-o",
+            "mill.toml",
+            "--feeds-back",
+            "500",
+            "--base-load",
+            "100",
+        ],
     ];
     let ran = shop.run(&arguments.concat());
     assert_eq!(ran.code, 0, "{}", ran.stderr);
@@ -103,7 +110,7 @@ fn with_a_file_the_sum_is_shown() {
     assert_eq!(ran.stderr, note);
     let text = shop.get("mill.toml");
     assert!(
-        text.contains("\nregen_power_w = 0            # what it takes back\n"),
+        text.contains("\nregen_power_w = 500          # what it takes back\n"),
         "{text}"
     );
     assert!(

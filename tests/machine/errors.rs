@@ -212,10 +212,10 @@ fn gear_without_lead() {
 #[test]
 fn missing_in_lists() {
     assert_snapshot!(findings(&with("[[load]]\non = \"M8\"\n\n[[preset]]\nspeed_mm_min = { X = 1000 }\n\n[spindle]\nfriction_nm = 1")), @r"
-    line 19, error machine-missing: `off` is missing in `load` / Word or words that switch it off
+    line 19, error machine-missing: `power_w` is missing in `load` / What it draws in W
       | [[load]]
       | ^^^^^^^^
-    line 19, error machine-missing: `power_w` is missing in `load` / What it draws in W
+    line 19, error machine-missing: `off` is missing in `load` / Word or words that switch it off; on printers heaters and fans need none, which the value 0 switches off
       | [[load]]
       | ^^^^^^^^
     line 22, error machine-missing: `axes` is missing in `preset` / The combination

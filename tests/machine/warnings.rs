@@ -241,3 +241,25 @@ fn voltages_that_cannot_be_checked() {
       |             ^^^
     ");
 }
+
+/// A supply that takes nothing back: read as it stands, since it may be meant.
+#[test]
+fn nothing_may_be_fed_back() {
+    let with = |more: &str| {
+        let peak = "peak_power_w = 3500";
+        edited(peak, &format!("{peak}\n{more}"))
+    };
+    let text = with("regen_power_w = 0");
+    machine(&text);
+    assert_snapshot!(findings(&text), @r"
+    line 7, warning machine-braking: with `regen_power_w` of 0 no axis may brake: braking feeds power back / leave it out where the capacitors of the bus take what small drives feed back (`capacitance_f` and `bus_max_v` count that); else give what the supply or its braking resistor takes
+      | regen_power_w = 0
+      |                 ^
+    ");
+    for fine in [
+        "regen_power_w = 1",
+        "regen_power_w = 0\ncredit_regen = true",
+    ] {
+        assert_eq!(findings(&with(fine)), "");
+    }
+}

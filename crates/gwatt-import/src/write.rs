@@ -28,6 +28,7 @@ pub(crate) fn machine_file(found: &Found, files: &[String]) -> String {
     for table in &found.tables {
         let _ = write!(out, "\n{table}");
     }
+    heaters(&mut out, found);
     spindle(&mut out, found);
     out.push_str("\n[limits]\n");
     line(
@@ -94,7 +95,7 @@ fn converter(out: &mut String, found: &Found) {
     asked(
         out,
         "regen_power_w = ",
-        "what it takes back; 0 for a plain power supply",
+        "what it takes back; left out: not checked",
     );
     asked(
         out,
@@ -221,6 +222,25 @@ fn drive(out: &mut String, id: AxisId, axis: &FoundAxis, found: &Found) {
         "efficiency = ",
         "mechanical by electrical power; without it 1",
     );
+}
+
+/// Loads of a printer that programs switch.
+fn heaters(out: &mut String, found: &Found) {
+    if found.build != Build::Belts {
+        return;
+    }
+    out.push_str(
+        "\n# Heaters draw most of a printer's power. They count once their power is known: volts\n\
+         # squared by ohms, or what the label says. A target of 0 switches them off.\n",
+    );
+    for (words, what) in [
+        (r#"["M104", "M109"]"#, "heater of the nozzle"),
+        (r#"["M140", "M190"]"#, "heater of the bed"),
+    ] {
+        out.push_str("# [[load]]\n");
+        line(out, &format!("# on = {words}"), what);
+        asked(out, "power_w = ", "such as 40 for a nozzle, 220 for a bed");
+    }
 }
 
 fn spindle(out: &mut String, found: &Found) {

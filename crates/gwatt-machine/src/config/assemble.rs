@@ -1,18 +1,17 @@
 //! The file's structs to the validated machine.
 
-use super::converter_name::converter_of;
 use super::findings::Findings;
-use super::machine_file::{LimitsTable, LoadTable, MachineFile, PathTable};
+use super::machine_file::{LimitsTable, MachineFile, PathTable};
 use super::path_name::{path_mode, rapid_path};
-use super::value::{At, Num, Number, PerAxis};
+use super::value::{Num, Number, PerAxis};
 use super::{
     axis, converter, drive_curve, levels, look_ahead, offsets, outputs, own_language, parts,
-    path_accel, plausible, preset, response, servo, spindle, tool, word,
+    path_accel, plausible, preset, response, servo, spindle, switched_load, tool,
 };
 use crate::MassPart;
 use crate::axis::{AXES, Axis, AxisId, AxisSet};
 use crate::controller::Controller;
-use crate::model::{Converter, ForcePoint, Limits, Load, Machine, Path};
+use crate::model::{ForcePoint, Limits, Load, Machine, Path};
 use crate::response::Responses;
 use crate::units::SECONDS_PER_MINUTE;
 
@@ -72,7 +71,7 @@ pub(crate) fn machine(
         .load
         .iter()
         .flatten()
-        .filter_map(|table| load(findings, table, &converters))
+        .filter_map(|table| switched_load::load(findings, table, &converters, &controller))
         .collect();
     if let Some(tables) = &file.levels {
         levels::take(findings, tables, &axes, &loads, &mut controller);
@@ -183,60 +182,6 @@ fn clearance(given: Option<&PerAxis<Number>>) -> [Option<f64>; AXES] {
 
 fn value<B>(number: Option<&Num<B>>, default: f64) -> f64 {
     number.map_or(default, |number| number.value)
-}
-
-fn load(
-    findings: &mut Findings<'_>,
-    table: &At<LoadTable>,
-    converters: &[Converter],
-) -> Option<Load> {
-    let mut read = |text: &At<String>| {
-        let word = word::parse(&text.value);
-        if word.is_none() {
-            let message = format!("\"{}\" is not a program word", text.value);
-            let help = Some("a letter and a number, such as \"M8\"".to_owned());
-            findings.error("machine-load", &text.span, message, help);
-        }
-        word
-    };
-    let LoadTable {
-        on,
-        off,
-        power_w,
-        converter,
-    } = &table.value;
-    let mut on_words = Vec::new();
-    for text in on.iter().flat_map(|list| &list.0) {
-        on_words.extend(read(text));
-    }
-    let mut off_words = Vec::new();
-    for text in off.iter().flat_map(|list| &list.0) {
-        off_words.extend(read(text).map(|word| (word, &text.span)));
-    }
-    for (word, span) in &off_words {
-        if on_words.contains(word) {
-            let message = "the same word switches the load on and off";
-            findings.error("machine-load", span, message, None);
-        }
-    }
-    let converter = match converter {
-        Some(name) => converter_of(findings, name, converters)?,
-        None if converters.len() > 1 => {
-            let message = "with several converters, a load needs `converter`";
-            findings.error("machine-missing", &table.span, message, None);
-            return None;
-        }
-        None => 0,
-    };
-    if on_words.is_empty() {
-        return None;
-    }
-    Some(Load {
-        on: on_words,
-        off: off_words.into_iter().map(|(word, _)| word).collect(),
-        power_w: power_w.as_ref()?.value,
-        converter,
-    })
 }
 
 fn limits(findings: &mut Findings<'_>, table: Option<&LimitsTable>) -> Limits {

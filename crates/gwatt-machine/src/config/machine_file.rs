@@ -273,8 +273,8 @@ pub(crate) struct LoadTable {
     /// value (`M104 S200`, `M106 S255`) switches it off when the value is 0.
     #[schemars(required)]
     pub(crate) on: Option<OneOrMany<String>>,
-    /// Word or words that switch it off.
-    #[schemars(required)]
+    /// Word or words that switch it off; needed but where all of `on` switch it off by the
+    /// value 0.
     pub(crate) off: Option<OneOrMany<String>>,
     /// What it draws in W.
     #[schemars(required)]

@@ -41,6 +41,7 @@ mod schema;
 mod servo;
 mod spindle;
 mod structure;
+mod switched_load;
 mod tool;
 mod value;
 mod word;

@@ -187,6 +187,15 @@ pub(crate) fn rotary(
 /// Checks a converter.
 pub(crate) fn converter(findings: &mut Findings<'_>, table: &ConverterTable) {
     field(findings, "peak_power_w", table.peak_power_w.as_ref());
+    let credited = [table.credit_regen, table.credit_capacitance].contains(&Some(true));
+    let none = table.regen_power_w.as_ref().filter(|it| it.value == 0.0);
+    if let Some(none) = none.filter(|_| !credited) {
+        let message = "with `regen_power_w` of 0 no axis may brake: braking feeds power back";
+        let help = "leave it out where the capacitors of the bus take what small drives feed back \
+                    (`capacitance_f` and `bus_max_v` count that); else give what the supply or \
+                    its braking resistor takes";
+        findings.warning("machine-braking", &none.span, message, Some(help.into()));
+    }
 }
 
 /// Longer than this no axis takes to its full acceleration, s.
