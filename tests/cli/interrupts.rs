@@ -1,11 +1,13 @@
 //! Runs that are interrupted: what they leave on the disk.
 
 use std::fmt::Write as _;
+use std::io::{Read, Write as _};
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
 use super::Shop;
+use super::progress::screen;
 
 /// Sends a signal by its name.
 fn signal(child: &Child, name: &str) {
@@ -63,4 +65,53 @@ fn an_interrupted_run_leaves_nothing() {
     // What was left is gone with the next run.
     assert!(shop.command(&run).output().unwrap().status.success());
     assert_eq!(shop.files(), files);
+}
+
+/// Ctrl-C on a terminal takes the bar away, and the output is as it was.
+#[test]
+fn ctrl_c_takes_the_bar_away() {
+    let shop = Shop::new();
+    let mut program = String::from("G21 G90 G94 G17\n");
+    for number in 0..40_000 {
+        let at = 200 + number % 2;
+        writeln!(program, "G0 X{at} Y200 Z{at}\nG0 X0 Y0 Z0").unwrap();
+    }
+    shop.put("long.ngc", &program);
+    shop.put("out.ngc", "M30\n");
+    let files = shop.files();
+    let gwatt = env!("CARGO_BIN_EXE_gwatt");
+    let line = format!("{gwatt} limit long.ngc -m three-axis -o out.ngc --progress always");
+    let spawned = Command::new("script")
+        .args(["-qec", &line, "/dev/null"])
+        .current_dir(shop.path())
+        .env("TERM", "xterm")
+        .env_remove("AXIS_PROGRESS_BAR")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn();
+    let mut child = match spawned {
+        Ok(child) => child,
+        Err(error) => {
+            eprintln!("skipped: no terminal can be made (script: {error})");
+            return;
+        }
+    };
+    let (mut keys, mut shown) = (child.stdin.take().unwrap(), child.stdout.take().unwrap());
+    let (mut seen, mut part, mut pressed) = (Vec::new(), [0; 4096], false);
+    while let Ok(count @ 1..) = shown.read(&mut part) {
+        seen.extend_from_slice(&part[..count]);
+        if !pressed && String::from_utf8_lossy(&seen).contains("pass 1 [") {
+            keys.write_all(b"\x03").unwrap();
+            keys.flush().unwrap();
+            pressed = true;
+        }
+    }
+    let status = child.wait().unwrap();
+    let seen = String::from_utf8(seen).unwrap();
+    assert!(pressed, "{seen:?}");
+    // 128 and the number of SIGINT, as of every program that it ends.
+    assert_eq!(status.code(), Some(130), "{seen:?}");
+    assert_eq!(screen(&seen).replace("^C", ""), "", "{seen:?}");
+    assert_eq!(shop.files(), files);
+    assert_eq!(shop.get("out.ngc"), "M30\n");
 }

@@ -6,7 +6,7 @@ use std::process::Command;
 use super::Shop;
 
 /// What a terminal shows of a text in the end: carriage returns, erased lines and ways up.
-fn screen(text: &str) -> String {
+pub(super) fn screen(text: &str) -> String {
     let mut lines = vec![String::new()];
     let (mut row, mut column) = (0, 0);
     let mut signs = text.chars().peekable();
