@@ -158,3 +158,55 @@ fn a_drive_is_put_into_service() {
     let signal = fs::read_to_string(shop.path().join("signal.csv")).expect("a signal");
     assert_eq!(signal.lines().count(), 6001);
 }
+
+/// What docs/newcomers.md writes, one command after another as on the page; and the files that
+/// were filled in are what the imports gave, where nothing was asked for.
+#[test]
+fn three_newcomers_get_their_pictures() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let desk = tempfile::tempdir().expect("a folder");
+    let folder = Path::new("examples/newcomers");
+    fs::create_dir_all(desk.path().join(folder)).expect("a folder");
+    for entry in fs::read_dir(root.join(folder)).expect("a folder") {
+        let entry = entry.expect("an entry");
+        let copy = desk.path().join(folder).join(entry.file_name());
+        fs::copy(entry.path(), copy).expect("a copy");
+    }
+    let page = fs::read_to_string(root.join("docs/newcomers.md")).expect("a page");
+    let commands = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("    gwatt "));
+    let mut pages = 0;
+    for line in commands {
+        let ran = Command::new(env!("CARGO_BIN_EXE_gwatt"))
+            .args(line.split(' '))
+            .current_dir(desk.path())
+            .output()
+            .expect("gwatt runs");
+        let said = String::from_utf8_lossy(&ran.stderr);
+        assert!(ran.status.success(), "{line}: {said}");
+        if let Some((_, name)) = line.split_once("--html ") {
+            let page = fs::read_to_string(desk.path().join(name)).expect("a page");
+            assert!(page.starts_with("<!DOCTYPE html>"), "{line}");
+            pages += 1;
+        }
+    }
+    assert_eq!(pages, 4);
+    for (imported, filled) in [
+        ("mine.toml", "mill.toml"),
+        ("router.toml", "router.toml"),
+        ("printer.toml", "printer.toml"),
+    ] {
+        let imported = fs::read_to_string(desk.path().join(imported)).expect("a machine");
+        let filled = fs::read_to_string(root.join(folder).join(filled)).expect("a machine");
+        let given = imported
+            .lines()
+            .filter(|line| !line.is_empty() && !line.starts_with('#'));
+        for line in given {
+            assert!(
+                filled.lines().any(|own| own == line),
+                "{filled}\nlacks {line}"
+            );
+        }
+    }
+}
