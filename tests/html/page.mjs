@@ -75,7 +75,9 @@ async function links(tab, name) {
     const box = plot.over.getBoundingClientRect();
     plot.over.scrollIntoView({ block: "center" });
     const middle = (which.from[bar] + which.to[bar]) / 2;
-    return { left: plot.valToPos(middle, "x"), high: box.height / 2, lead: BARS.lead[bar] };
+    // Where both machines are drawn the nearer line counts.
+    const high = COMPARED ? plot.valToPos(which.peak[bar], "y") : box.height / 2;
+    return { left: plot.valToPos(middle, "x"), high, lead: BARS.lead[bar] };
   });
   await tab.locator(".u-over").first().click({ position: { x: peak.left, y: peak.high } });
   const picked = await tab.evaluate((lead) => [block(PICKED).load >= block(lead).load - 1e-9, block(PICKED).where, block(PICKED).text], peak.lead);

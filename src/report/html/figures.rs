@@ -35,8 +35,8 @@ pub(super) fn head(page: &Page<'_>) -> Value {
         Some(Compared {
             summaries, names, ..
         }) => (
-            of_both(summaries.map(notes_of), names),
-            of_both(summaries.map(|it| it.conditions.clone()), names),
+            of_both(&summaries.map(notes_of), names),
+            of_both(&summaries.map(|it| it.conditions.clone()), names),
         ),
         None => (notes_of(before), last.conditions.clone()),
     };
@@ -117,8 +117,8 @@ fn both(compared: Compared<'_>, list: fn(&Summary, &str) -> Vec<Value>) -> Vec<V
 }
 
 /// What is said of both machines, then what is said of one, with its name.
-fn of_both(lists: [Vec<String>; 2], names: [&str; 2]) -> Vec<String> {
-    let [first, second] = &lists;
+fn of_both(lists: &[Vec<String>; 2], names: [&str; 2]) -> Vec<String> {
+    let [first, second] = lists;
     let shared = first.iter().filter(|it| second.contains(it)).cloned();
     let mut list: Vec<String> = shared.collect();
     for (own, other, name) in [(first, second, names[0]), (second, first, names[1])] {

@@ -33,6 +33,10 @@ pub struct PageRows {
     ended_s: f64,
 }
 
+fn weight(it: Passing<'_>) -> f64 {
+    it.weight()
+}
+
 impl Default for PageRows {
     fn default() -> Self {
         let differs = |it: Passing<'_>| match it.other {
@@ -43,7 +47,7 @@ impl Default for PageRows {
             count: 0,
             bars: Bars::default(),
             path: Path::default(),
-            worst: Peaks::new(BLOCKS, |it| it.weight()),
+            worst: Peaks::new(BLOCKS, weight),
             differ: Peaks::new(BLOCKS, differs),
             before: Peaks::new(PEAKS, |it| it.row.peak_w),
             after: Peaks::new(PEAKS, |it| after_w(it.row)[0]),
@@ -101,13 +105,14 @@ impl PageRows {
         self.count += 1;
         self.bars.add(next);
         self.path.add(next);
-        let peaks = [
+        for peaks in [
             &mut self.worst,
             &mut self.differ,
             &mut self.before,
             &mut self.after,
-        ];
-        peaks.into_iter().for_each(|peaks| peaks.add(next));
+        ] {
+            peaks.add(next);
+        }
         self.changed += u64::from(!row.action.is_empty());
     }
 

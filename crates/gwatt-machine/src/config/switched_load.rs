@@ -5,7 +5,7 @@ use super::findings::Findings;
 use super::machine_file::LoadTable;
 use super::value::At;
 use super::word;
-use crate::controller::{Controller, Family};
+use crate::controller::Controller;
 use crate::model::{Converter, Load};
 
 /// M words of printers whose value 0 switches off what they switch on: heaters of nozzle, bed
@@ -79,5 +79,5 @@ pub(super) fn load(
 /// Whether each word that switches it on switches it off too, by the value 0.
 fn follows_value(on: &[(u8, f64)], controller: &Controller) -> bool {
     let by_value = |&(letter, number): &(u8, f64)| letter == b'M' && BY_VALUE.contains(&number);
-    controller.language.family == Family::Marlin && on.iter().all(by_value)
+    controller.language.family.facts().printer && on.iter().all(by_value)
 }
