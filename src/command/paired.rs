@@ -180,7 +180,9 @@ mod tests {
             for (rows, sender) in [(rows(first), first_sender), (rows(second), second_sender)] {
                 scope.spawn(move || {
                     let mut sent = SentRows::new(sender);
-                    rows.iter().for_each(|row| sent.row(row).unwrap());
+                    for row in &rows {
+                        sent.row(row).unwrap();
+                    }
                     sent.send().unwrap();
                 });
             }

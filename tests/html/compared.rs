@@ -118,7 +118,7 @@ fn text_and_page_say_the_same() {
             let load = figures(&blocks[column], count)[at];
             let limit_w = loads[which].1;
             assert!(
-                (load - 6001.321_91 / limit_w).abs() < 1e-4,
+                (load - 6_001.321_91 / limit_w).abs() < 1e-4,
                 "{column}: {load}"
             );
         }

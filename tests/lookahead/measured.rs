@@ -67,7 +67,7 @@ fn a_print_lasts_as_long_as_was_measured() {
     assert!((1750.0..1790.0).contains(&total_s), "{total_s}");
 }
 
-/// PrusaSlicer writes its own estimate of the time into a print, and the limits that it is for
+/// `PrusaSlicer` writes its own estimate of the time into a print, and the limits that it is for
 /// (M201 to M205, classic jerk). Both count dwells, and neither heating nor homing.
 #[test]
 fn prints_last_as_long_as_the_slicer_says() {
