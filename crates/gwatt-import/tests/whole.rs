@@ -33,7 +33,7 @@ fn as_it_is_written() {
 
     [converter]
     # peak_power_w =             # what the supply of the drives delivers at most, in W
-    # regen_power_w =            # what it takes back; 0 for a plain power supply
+    # regen_power_w =            # what it takes back; left out: not checked
     # base_load_w =              # control, fans, pumps that always run
 
     [look_ahead.junction_deviation]
