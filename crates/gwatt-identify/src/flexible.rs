@@ -83,6 +83,8 @@ pub struct Flexible {
     pub seconds: f64,
     /// True where standard errors are known.
     pub has_errors: bool,
+    /// Whether the sign of the inertia is known, by errors that may be too small to show.
+    pub(crate) sign_is_sure: bool,
     /// How far the delay is in doubt as long as the zeros stay what they are, s.
     pub(crate) delay_doubt_s: f64,
     /// What was measured.
@@ -304,6 +306,9 @@ fn keep_ringing(roots: &mut [Vec<Root>], period_s: f64) {
     }
 }
 
+/// A gain with a larger standard error, as a share, may have the other sign.
+const SURE_SIGN: f64 = 1.0 / 3.0;
+
 /// What figures are off by at most counts as so many standard errors.
 const AT_MOST: f64 = 2.0;
 
@@ -379,6 +384,8 @@ fn describe(
             "check that input and motion are of the same axis and the same time",
         ));
     }
+    let is_unsure = |std: f64| !std.is_nan() && std > SURE_SIGN * gain.abs();
+    let sign_is_sure = !estimate.std(0).is_some_and(is_unsure);
     let bands = shown_up_to(data, &found.response);
     let mut roots = roots_of(&transfer, bands, std);
     if data.from_command {
@@ -410,6 +417,7 @@ fn describe(
             value: transfer.delay_s,
             std: libm::hypot(delay_std, stands_for_delay_s(&transfer, data.from_command)),
         },
+        sign_is_sure,
         delay_doubt_s: delay_std,
         rel_error: left.rel_error,
         whiteness: Whiteness::of(&left.white, LAGS),

@@ -214,7 +214,7 @@ fn named(axis: &Rigid) -> Option<Judgement> {
 #[must_use]
 pub fn flexible(axis: &Flexible) -> Judgement {
     if axis.transfer.gain < 0.0 && axis.rel_error <= REL_ERROR {
-        let is_sure = axis.inertia.is_none_or(is_negative);
+        let is_sure = axis.sign_is_sure && axis.inertia.is_none_or(is_negative);
         return if is_sure {
             Judgement::Reversed
         } else {
