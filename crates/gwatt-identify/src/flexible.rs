@@ -224,7 +224,7 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
     let left = Left::of(&found, &data);
     left.widen(&mut found, choice.method);
     let friction = found.estimate.friction.clone();
-    let mut described = describe(found, &data, prepared, left)?;
+    let mut described = describe(found, &data, prepared, &left)?;
     described.speed_is_summed = rubbing.terms.contains(&Term::Drift);
     let figures = friction.iter().zip(&rubbing.about).zip(&rubbing.terms);
     for ((found, about), term) in figures {
@@ -365,7 +365,7 @@ fn describe(
     found: Modelled,
     data: &Data<'_>,
     prepared: &Prepared,
-    left: Left,
+    left: &Left,
 ) -> Outcome<Flexible> {
     let estimate = &found.estimate;
     let mut transfer = estimate.transfer.clone();
