@@ -68,9 +68,10 @@ pub struct ExciteArgs {
     /// acceleration]
     #[arg(long, required_unless_present = "machine")]
     pub amplitude: Option<f64>,
-    /// Samples a second [with --for: those of the recording]
-    #[arg(long, default_value_t = 1000.0, conflicts_with = "for_recording")]
-    pub rate_hz: f64,
+    /// Samples a second [default: 1000; with --for, those of the recording; where that has
+    /// no times, they are needed]
+    #[arg(long, value_name = "HZ")]
+    pub rate_hz: Option<f64>,
     /// M-sequence: length of the register, 3 to 20; 2^order − 1 steps
     /// [default: as --resolution-hz asks, else 12]
     #[arg(long)]
@@ -125,6 +126,14 @@ pub struct ExciteArgs {
     /// Write here [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+}
+
+impl ExciteArgs {
+    /// Samples a second of a signal that is made for no recording.
+    #[must_use]
+    pub fn samples_per_s(&self) -> f64 {
+        self.rate_hz.unwrap_or(1000.0)
+    }
 }
 
 /// Shapes of signals.

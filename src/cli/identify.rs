@@ -131,7 +131,7 @@ pub enum MethodArg {
     /// Plain least squares: for recordings without noise
     Arx,
     /// Least squares through the averaged frequency response: for excitation that
-    /// repeats itself, three times or more
+    /// repeats itself, three times or more; else without standard errors
     Frequency,
     /// Subspaces (MOESP)
     Subspace,

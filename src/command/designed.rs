@@ -99,7 +99,7 @@ fn recorded(args: &ExciteArgs, path: &Path) -> Result<Known> {
             None => None,
         },
         map: map.collect::<Outcome<Vec<MappedColumn>>>()?,
-        rate_hz: None,
+        rate_hz: args.rate_hz,
     };
     let read = if is_dash(path) {
         Recording::read_as(io::stdin().lock(), &read_as)
@@ -139,7 +139,7 @@ fn of_machine(args: &ExciteArgs, name: &str, terminal: Terminal) -> Result<Subje
     let mut known = Known::of_figures(
         transfer,
         [axis.viscous_n_s_m, axis.coulomb_n],
-        args.rate_hz.recip(),
+        args.samples_per_s().recip(),
     );
     known.rotary = axis.kind == AxisKind::Rotary;
     Ok(Subject {

@@ -11,10 +11,10 @@ use crate::cli::{ExciteArgs, ShapeArg, ValueName};
 
 /// Makes a signal.
 pub fn run(args: &ExciteArgs, terminal: Terminal) -> Result<Verdict> {
+    let rate_hz = args.samples_per_s();
     ensure!(
-        args.rate_hz.is_finite() && args.rate_hz > 0.0,
-        "--rate-hz {} is not positive",
-        args.rate_hz
+        rate_hz.is_finite() && rate_hz > 0.0,
+        "--rate-hz {rate_hz} is not positive"
     );
     if args.for_recording.is_some() || args.machine.is_some() {
         return designed::run(args, terminal);
@@ -25,7 +25,7 @@ pub fn run(args: &ExciteArgs, terminal: Terminal) -> Result<Verdict> {
     );
     let amplitude = args.amplitude.context("give --amplitude")?;
     let name = args.name.unwrap_or(ValueName::ExcitationNm);
-    let signal = make(shape(args)?, amplitude, args.rate_hz.recip())?;
+    let signal = make(shape(args)?, amplitude, rate_hz.recip())?;
     let warnings = warnings(args, name, &signal)?;
     deliver(args.output.as_deref(), name, &signal)?;
     show(&signal, terminal);
@@ -36,7 +36,7 @@ pub fn run(args: &ExciteArgs, terminal: Terminal) -> Result<Verdict> {
 }
 
 fn shape(args: &ExciteArgs) -> Result<Shape> {
-    let period_s = args.rate_hz.recip();
+    let period_s = args.samples_per_s().recip();
     if let Some(resolution) = args.resolution_hz {
         ensure!(
             resolution.is_finite() && resolution > 0.0,
@@ -47,7 +47,10 @@ fn shape(args: &ExciteArgs) -> Result<Shape> {
         .seconds
         .or(args.resolution_hz.map(f64::recip))
         .unwrap_or(10.0);
-    let (from_hz, to_hz) = (args.from_hz, args.to_hz.unwrap_or(0.4 * args.rate_hz));
+    let (from_hz, to_hz) = (
+        args.from_hz,
+        args.to_hz.unwrap_or(0.4 * args.samples_per_s()),
+    );
     Ok(match args.shape {
         ShapeArg::MSequence => {
             ensure!(args.hold > 0, "--hold 0 makes no signal");

@@ -203,6 +203,13 @@ impl<'m, 'r> Certifier<'m, 'r> {
         self.stale = true;
         verdict.pass_spindle();
         verdict.done += 1;
+        if !verdict.stands.take(verdict.machine, None, mv) {
+            let message = format!("the written program has {NO_STOP} here");
+            let place = (mv.text, mv.line);
+            verdict
+                .reasons
+                .push(place, "changed-sequence", message, BUG, text);
+        }
         assessor.want = verdict.want();
         let mut sink = |mv: &Move, after: &Assessment, text: &[u8]| verdict.take(mv, after, text);
         assessor.push(mv, text, &mut sink);
@@ -385,9 +392,8 @@ impl<'m, 'r> Verdict<'m, 'r> {
                 Some(Found::Right) | None => None,
             },
             (Step::Move(mv), Some(Expected::Move(original))) => {
-                let stands = self.stands.take(self.machine, original, mv);
-                different(original, mv)
-                    .or((!stands).then_some("no stop before it, where a rapid stopped,"))
+                let stands = self.stands.take(self.machine, Some(original), mv);
+                different(original, mv).or((!stands).then_some(NO_STOP))
             }
             (Step::Action(action), Some(Expected::Action(original)))
                 if action.kind == original.kind && same(action.value, original.value) =>
@@ -456,6 +462,9 @@ impl<'m, 'r> Verdict<'m, 'r> {
         self.tally.add(mv, after, text);
     }
 }
+
+/// What is missing before a move.
+const NO_STOP: &str = "no stop before it, where a rapid stopped,";
 
 const BUG: &str = "nothing was written; this is a fault of gwatt, please report it";
 

@@ -178,6 +178,44 @@ fn a_signal_is_designed_for_an_axis() {
     .refused("is read by this run");
 }
 
+/// A drive exports no times: the rate is that of the recording, and of the signal.
+#[test]
+fn a_signal_is_designed_for_a_recording_without_times() {
+    use std::fmt::Write as _;
+    let shop = Shop::new();
+    let mut state = 1_u64;
+    let mut random = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 33) as f64 / f64::from(1_u32 << 31) - 0.5
+    };
+    // 0.02 kg·m² under a torque of two levels.
+    let names = "torque_nm,accel_rad_s2\n";
+    let (mut timed, mut bare) = (format!("time_s,{names}"), names.to_owned());
+    for k in 0..2000 {
+        let torque = if random() > 0.0 { 1.0 } else { -1.0 };
+        let row = format!("{torque},{:.6}", 50.0 * torque + random());
+        writeln!(timed, "{:.3},{row}", f64::from(k) * 1e-3).unwrap();
+        writeln!(bare, "{row}").unwrap();
+    }
+    shop.put("x.csv", timed);
+    shop.put("bare.csv", bare);
+    let design = |recording, more: &[&'static str]| {
+        let common = ["excite", "--amplitude", "1", "--seconds", "1", "--for"];
+        shop.run(&[&common[..], &[recording], more].concat())
+    };
+    design("bare.csv", &[]).refused("or give --rate-hz");
+    design("bare.csv", &["--rate-hz", "-1"]).refused("--rate-hz -1 is not positive");
+    design("x.csv", &["--rate-hz", "1000"]).refused("--rate-hz has no meaning");
+    let [timed, bare] = [
+        design("x.csv", &[]),
+        design("bare.csv", &["--rate-hz", "1000"]),
+    ];
+    assert_eq!(bare.code, 0, "{}", bare.stderr);
+    assert_eq!(bare.stdout, timed.stdout);
+}
+
 /// Torque and angle of a motor whose screw of 10 mm moves 100 kg: what is written
 /// is the mass of the slide.
 #[test]

@@ -158,6 +158,16 @@ fn recordings_are_joined_and_columns_mapped() {
     let ran = shop.run(&[&common[..], &mapped].concat());
     assert_eq!(ran.code, 0, "{}", ran.stderr);
     assert!(ran.stdout.contains("verdict: good"), "{}", ran.stdout);
+    // Short names right below a line about the recording are none of its units.
+    let short = shop.get("drive.csv").replace("A;mm\n", "");
+    shop.put(
+        "short.csv",
+        short.replace("Drive 7; 1 kHz", "Trace; 1000 Hz"),
+    );
+    let named = ["identify", "short.csv", "--axis", "X", "--rate-hz", "1000"];
+    let again = shop.run(&[&named[..], &mapped].concat());
+    let figures = |text: &str| text.split_once('\n').unwrap().1.to_owned();
+    assert_eq!(figures(&again.stdout), figures(&ran.stdout));
     shop.run(&[&common[..], &["--map", "force=Iq"]].concat())
         .refused("--map force=Iq: there is no factor with a unit");
     shop.run(&["identify", "drive.csv", "--axis", "X", "--rate-hz", "0"])

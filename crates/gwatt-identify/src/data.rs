@@ -47,9 +47,13 @@ impl Signals {
     /// Those of `data` after `filter`.
     #[must_use]
     pub fn filtered(data: &Data<'_>, filter: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        // Of the first samples only, where friction is known of all.
+        let present = |x: &'_ [f64]| x.len().min(data.input.len());
+        let friction = data.friction.iter();
+        let friction = friction.map(|x| filter(x.get(..present(x)).unwrap_or_default()));
         Self {
             input: filter(data.input),
-            friction: data.friction.iter().map(|x| filter(x)).collect(),
+            friction: friction.collect(),
             output: filter(data.output),
             undisturbed: data.undisturbed.map(filter),
         }

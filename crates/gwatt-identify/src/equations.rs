@@ -258,17 +258,18 @@ impl Equations {
         let t = self.raw.period_s;
         let none = vec![0.0; self.inside.force.len()];
         for column in columns {
-            let (inside, above) = if column.is_empty() {
-                (none.clone(), none.clone())
+            let inside = if column.is_empty() {
+                none.clone()
             } else {
-                (
-                    self.in_band(column),
-                    above_band(column, self.bandwidth_hz, t),
-                )
+                self.in_band(column)
             };
             self.inside.further.push(inside);
             if let Some(band) = &mut self.above {
-                band.further.push(above);
+                band.further.push(if column.is_empty() {
+                    none.clone()
+                } else {
+                    above_band(column, self.bandwidth_hz, t)
+                });
             }
         }
     }

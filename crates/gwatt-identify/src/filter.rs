@@ -23,18 +23,43 @@ fn butterworth(corner_hz: f64, period_s: f64) -> [Section; 2] {
     })
 }
 
-/// Runs a section over a signal, in steady state for its first value.
-fn run(section: Section, x: &mut [f64]) {
-    let [b0, b1, b2, a1, a2] = section;
-    let first = x.first().copied().unwrap_or_default();
-    // Direct form II transposed; gain 1 at rest.
-    let mut s1 = first * (1.0 - b0);
-    let mut s2 = first * (b2 - a2);
+/// A section with what it holds: direct form II transposed, of gain 1 at rest.
+struct Running {
+    section: Section,
+    held: [f64; 2],
+}
+
+impl Running {
+    /// In steady state for a first value.
+    fn new(section: Section, first: f64) -> Self {
+        let [b0, _, b2, _, a2] = section;
+        Self {
+            section,
+            held: [first * (1.0 - b0), first * (b2 - a2)],
+        }
+    }
+
+    fn next(&mut self, x: f64) -> f64 {
+        let [b0, b1, b2, a1, a2] = self.section;
+        let [s1, s2] = self.held;
+        let y = b0 * x + s1;
+        self.held = [b1 * x - a1 * y + s2, b2 * x - a2 * y];
+        y
+    }
+}
+
+/// Runs one section after the other over a signal. Both go on in one pass: what the one
+/// waits for, the other fills.
+fn run<'a>([one, two]: [Section; 2], mut x: impl Iterator<Item = &'a mut f64>) {
+    let Some(first) = x.next() else {
+        return;
+    };
+    let mut one = Running::new(one, *first);
+    let y = one.next(*first);
+    let mut two = Running::new(two, y);
+    *first = two.next(y);
     for value in x {
-        let y = b0 * *value + s1;
-        s1 = b1 * *value - a1 * y + s2;
-        s2 = b2 * *value - a2 * y;
-        *value = y;
+        *value = two.next(one.next(*value));
     }
 }
 
@@ -52,13 +77,12 @@ pub fn low_pass(x: &[f64], corner_hz: f64, period_s: f64) -> Vec<f64> {
     let before = long.len();
     long.extend_from_slice(x);
     long.extend(x.iter().rev().skip(1).take(pad).map(|v| 2.0 * last - v));
-    for _ in 0..2 {
-        for section in butterworth(corner_hz, period_s) {
-            run(section, &mut long);
-        }
-        long.reverse();
-    }
-    long.into_iter().skip(before).take(n).collect()
+    let sections = butterworth(corner_hz, period_s);
+    run(sections, long.iter_mut());
+    run(sections, long.iter_mut().rev());
+    long.drain(..before);
+    long.truncate(n);
+    long
 }
 
 /// First derivative by five points (error of fourth order); the two values at

@@ -12,6 +12,7 @@ use super::figure::Figure;
 use super::leaky_integrator::Leaky;
 use super::measured_noise::Noise;
 use super::methods::{Modelled, by_arx, by_response, by_search, by_subspace};
+use super::missed::{missed_energy, peak_of_colour};
 use super::noise::Whiteness;
 use super::output_error::residuals;
 use super::parameters::parameters;
@@ -63,6 +64,9 @@ pub struct Flexible {
     /// Which share of what is left the input explains, as any linear system could: what
     /// the model misses of the axis, where the rest is noise.
     pub missed_share: f64,
+    /// The energy of that in units of the noise, where it is more than chance: standard
+    /// errors are wider by its root.
+    pub missed_energy: f64,
     /// Whiteness of the squares of what is left: noise of one strength has it, what comes
     /// and goes with the motion has not.
     pub steadiness: Whiteness,
@@ -79,6 +83,8 @@ pub struct Flexible {
     pub seconds: f64,
     /// True where standard errors are known.
     pub has_errors: bool,
+    /// Whether the sign of the inertia is known, by errors that may be too small to show.
+    pub(crate) sign_is_sure: bool,
     /// How far the delay is in doubt as long as the zeros stay what they are, s.
     pub(crate) delay_doubt_s: f64,
     /// What was measured.
@@ -208,15 +214,17 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
         Method::Arx => by_arx(&data, prepared, choice),
         Method::Subspace => by_subspace(&data, prepared, choice),
     };
-    let found = find(&choice);
-    let found = found.ok_or_else(|| {
+    let found = find(&choice).ok_or_else(|| {
         IdentifyError::new(
             "no stable model fits the recording",
             "check units and signs of the columns, excite longer, or give --order",
         )
     })?;
+    let mut found = found;
+    let left = Left::of(&found, &data);
+    left.widen(&mut found, choice.method);
     let friction = found.estimate.friction.clone();
-    let mut described = describe(found, &data, prepared)?;
+    let mut described = describe(found, &data, prepared, &left)?;
     described.speed_is_summed = rubbing.terms.contains(&Term::Drift);
     let figures = friction.iter().zip(&rubbing.about).zip(&rubbing.terms);
     for ((found, about), term) in figures {
@@ -298,18 +306,70 @@ fn keep_ringing(roots: &mut [Vec<Root>], period_s: f64) {
     }
 }
 
-fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Flexible> {
-    let leaky = found.noise.held(data);
-    let compared = leaky.as_ref().map_or(*data, |leaky| leaky.data(data));
+/// A gain with a larger standard error, as a share, may have the other sign.
+const SURE_SIGN: f64 = 1.0 / 3.0;
+
+/// What figures are off by at most counts as so many standard errors.
+const AT_MOST: f64 = 2.0;
+
+/// What a model leaves.
+struct Left {
+    /// What makes the noise white.
+    white: Vec<f64>,
+    /// Norm of it by norm of the output.
+    rel_error: f64,
+    /// Which share of it the input explains.
+    missed_share: f64,
+    /// The energy of that, in units of the noise.
+    missed_energy: f64,
+}
+
+impl Left {
+    fn of(found: &Modelled, data: &Data<'_>) -> Self {
+        let leaky = found.noise.held(data);
+        let compared = leaky.as_ref().map_or(*data, |leaky| leaky.data(data));
+        let left = residuals(&compared, &found.estimate).unwrap_or_default();
+        let mut rel_error = share(&compared, &left);
+        if leaky.is_some() {
+            let plain = as_it_is(data, &found.estimate.transfer);
+            let plain = plain.and_then(|plain| residuals(data, &plain));
+            rel_error = rel_error.min(plain.map_or(f64::MAX, |left| share(data, &left)));
+        }
+        let known = data.undisturbed.unwrap_or(compared.input);
+        let known = known.get(data.skip()..).unwrap_or_default();
+        let white = filtered(&left, &found.noise.taps);
+        Self {
+            rel_error,
+            missed_share: explained_share(known, &left, data.period_s),
+            missed_energy: missed_energy(known, &white, data.period_s),
+            white,
+        }
+    }
+
+    /// Widens standard errors by what is more than white noise; those by a frequency
+    /// response know the colour of the noise.
+    fn widen(&self, found: &mut Modelled, method: Method) {
+        let colour = match method {
+            Method::Frequency => 1.0,
+            _ => peak_of_colour(&self.white),
+        };
+        let wider = colour + self.missed_energy / (AT_MOST * AT_MOST);
+        found.estimate.covariance *= wider;
+        for figure in &mut found.estimate.friction {
+            figure.std *= wider.sqrt();
+        }
+    }
+}
+
+fn describe(
+    found: Modelled,
+    data: &Data<'_>,
+    prepared: &Prepared,
+    left: &Left,
+) -> Outcome<Flexible> {
     let estimate = &found.estimate;
     let mut transfer = estimate.transfer.clone();
     let fitted_delay_s = transfer.delay_s;
-    let left = residuals(&compared, estimate).unwrap_or_default();
-    let mut rel_error = share(&compared, &left);
-    if leaky.is_some() {
-        let plain = as_it_is(data, &transfer).and_then(|plain| residuals(data, &plain));
-        rel_error = rel_error.min(plain.map_or(f64::MAX, |left| share(data, &left)));
-    }
     let std = |index: usize| {
         if found.has_errors {
             estimate.std(index).unwrap_or(f64::NAN)
@@ -324,20 +384,15 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
             "check that input and motion are of the same axis and the same time",
         ));
     }
+    let is_unsure = |std: f64| !std.is_nan() && std > SURE_SIGN * gain.abs();
+    let sign_is_sure = !estimate.std(0).is_some_and(is_unsure);
     let bands = shown_up_to(data, &found.response);
     let mut roots = roots_of(&transfer, bands, std);
     if data.from_command {
         keep_ringing(&mut roots, data.period_s);
     }
     let [zeros, unclear_zeros, poles] = roots;
-    let known = data.undisturbed.unwrap_or(compared.input);
-    let missed_share = explained_share(
-        known.get(data.skip()..).unwrap_or_default(),
-        &left,
-        data.period_s,
-    );
-    let white = filtered(&left, &found.noise.taps);
-    let squares: Vec<f64> = white.iter().map(|x| x * x).collect();
+    let squares: Vec<f64> = left.white.iter().map(|x| x * x).collect();
     let delay_std = if found.delay_is_free {
         // Where other parameters can take its place, it is no longer straight.
         let alone = std(parameters(&transfer, true).len() - 1);
@@ -362,10 +417,12 @@ fn describe(found: Modelled, data: &Data<'_>, prepared: &Prepared) -> Outcome<Fl
             value: transfer.delay_s,
             std: libm::hypot(delay_std, stands_for_delay_s(&transfer, data.from_command)),
         },
+        sign_is_sure,
         delay_doubt_s: delay_std,
-        rel_error,
-        whiteness: Whiteness::of(&white, LAGS),
-        missed_share,
+        rel_error: left.rel_error,
+        whiteness: Whiteness::of(&left.white, LAGS),
+        missed_share: left.missed_share,
+        missed_energy: left.missed_energy,
         steadiness: Whiteness::of(&squares, LAGS),
         noise_order: found.noise.taps.len(),
         leak: found.noise.leak,

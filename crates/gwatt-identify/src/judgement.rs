@@ -214,7 +214,7 @@ fn named(axis: &Rigid) -> Option<Judgement> {
 #[must_use]
 pub fn flexible(axis: &Flexible) -> Judgement {
     if axis.transfer.gain < 0.0 && axis.rel_error <= REL_ERROR {
-        let is_sure = axis.inertia.is_none_or(is_negative);
+        let is_sure = axis.sign_is_sure && axis.inertia.is_none_or(is_negative);
         return if is_sure {
             Judgement::Reversed
         } else {
@@ -243,10 +243,16 @@ pub fn flexible(axis: &Flexible) -> Judgement {
     let inertia = axis.inertia.map_or(0.0, |j| excess(j, MASS));
     let frequency = worst(|root| root.omega_rad_s, FREQUENCY).max(inertia);
     let damping = worst(|root| root.damping, DAMPING);
-    if damping > TIMES_MAX && frequency <= 1.0 {
-        return Judgement::TooNoisyForDamping;
+    let verdict = if damping > TIMES_MAX && frequency <= 1.0 {
+        Judgement::TooNoisyForDamping
+    } else {
+        longer(damping.max(frequency))
+    };
+    // Where errors are those of what the model misses, a longer recording has them too.
+    if verdict != Judgement::Good && axis.missed_energy > 1.0 {
+        return Judgement::MoreThanNoise;
     }
-    longer(damping.max(frequency))
+    verdict
 }
 
 /// Whether a model misses more than it may: what the input would explain of what is

@@ -109,7 +109,9 @@ impl Layout {
             // One row may have empty cells at its end.
             let goes_with = |names: &[String]| names.len() >= 2 && cells.len() <= names.len();
             if is_numbers && goes_with(units) && cells.len() >= 2 {
-                let has_units = names.len() == units.len() && units.iter().all(|u| is_unit(u));
+                let has_units = names.len() == units.len()
+                    && units.iter().all(|unit| is_unit(unit))
+                    && !names.iter().any(|name| is_figure(name));
                 let names = if has_units {
                     named_with_units(names, units)
                 } else {
@@ -136,6 +138,12 @@ impl Layout {
 fn is_unit(cell: &str) -> bool {
     let bare = cell.trim_matches(['[', ']', '(', ')']);
     bare.chars().count() <= 8 && !bare.contains('_')
+}
+
+/// Whether a cell is a figure with its unit, as lines about a recording have and names are not.
+fn is_figure(cell: &str) -> bool {
+    let (figure, unit) = cell.split_once(' ').unwrap_or((cell, ""));
+    !unit.is_empty() && number(figure.as_bytes(), b';').is_some()
 }
 
 fn named_with_units(names: &[String], units: &[String]) -> Vec<String> {
@@ -184,6 +192,14 @@ mod tests {
                 "1,2",
             ),
             ("\"a, b\";c\n1;2\n", b';', &["a, b", "c"], 1, "1;2"),
+            // Short names below a line about the recording are no units of it.
+            (
+                "Trace; 500 Hz\nIq;Enc\n1,5;2\n",
+                b';',
+                &["Iq", "Enc"],
+                2,
+                "1,5;2",
+            ),
         ] {
             let expected = (separator, names(list), lines, first.to_owned());
             assert_eq!(layout(text), expected, "{text}");

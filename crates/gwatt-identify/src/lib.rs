@@ -48,6 +48,7 @@ mod layout;
 mod leaky_integrator;
 mod methods;
 mod modal;
+mod missed;
 mod mode;
 mod mode_starts;
 mod candidate_models;

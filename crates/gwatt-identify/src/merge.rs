@@ -278,17 +278,34 @@ fn optional(table: &mut dyn TableLike, key: &str, value: Option<f64>) {
     }
 }
 
-/// Writes a value with six digits, where it stands or at the end.
+/// Writes a value with six digits, where it stands or at the end. A comment next to another
+/// value says which one it was about.
 pub(super) fn set(table: &mut dyn TableLike, key: &str, value: f64) {
     let value = six_digits(value);
     if let Some(old) = table.get_mut(key).and_then(|item| item.as_value_mut()) {
-        let decor = old.decor().clone();
+        let mut decor = old.decor().clone();
+        let before = old
+            .as_float()
+            .or_else(|| old.as_integer().map(|n| n as f64));
+        if before != Some(value)
+            && let Some((space, comment)) = decor
+                .suffix()
+                .and_then(|suffix| suffix.as_str()?.split_once('#'))
+            && !comment.trim_start().starts_with(WAS)
+        {
+            let was = old.clone().decorated("", "");
+            let marked = format!("{space}# {WAS}{was}: {}", comment.trim());
+            decor.set_suffix(marked);
+        }
         *old = Value::from(value);
         *old.decor_mut() = decor;
     } else {
         table.insert(key, toml_edit::value(value));
     }
 }
+
+/// How a comment begins that is about an earlier value.
+const WAS: &str = "was ";
 
 /// Six significant digits.
 #[must_use]
@@ -356,13 +373,32 @@ lead_mm = 10
     fn comments_stay_and_values_change() {
         let merged = into_machine("m.toml", MACHINE, AxisId::X, &figures(), Some(0.2)).unwrap();
         let expected = MACHINE
-            .replace("mass_kg = 300   # guessed", "mass_kg = 412.346   # guessed")
+            .replace(
+                "mass_kg = 300   # guessed",
+                "mass_kg = 412.346   # was 300: guessed",
+            )
             .replace(
                 "coulomb_n = 200\n",
                 "coulomb_n = 0.0\nviscous_n_s_m = 150.0\n",
             )
             + "\n[limits]\nmargin = 0.2\n";
         assert_eq!(merged, expected);
+        // The comment stays about that value, and about this one where it stays.
+        let lighter = AxisFigures {
+            mass: 400.0,
+            ..figures()
+        };
+        let again = into_machine("m.toml", &merged, AxisId::X, &lighter, None).unwrap();
+        assert!(
+            again.contains("mass_kg = 400.0   # was 300: guessed\n"),
+            "{again}"
+        );
+        let same = AxisFigures {
+            mass: 300.0,
+            ..figures()
+        };
+        let same = into_machine("m.toml", MACHINE, AxisId::X, &same, None).unwrap();
+        assert!(same.contains("mass_kg = 300.0   # guessed\n"), "{same}");
         // A smaller margin than the one in force changes nothing.
         let kept = into_machine("m.toml", MACHINE, AxisId::X, &figures(), Some(0.05)).unwrap();
         assert!(!kept.contains("margin"));

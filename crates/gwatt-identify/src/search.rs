@@ -98,9 +98,10 @@ fn choose(
         let before = best.as_ref().map(|best| &best.found.transfer);
         let taps = &noise.taps;
         let coarse = Lines::new(data, &noise, band_rad_s, COARSE);
-        let mut starts = coarse.map_or(Vec::new(), |lines| mode_starts::starts(&lines, given));
+        // What was found before comes first: the others are given up where they are far off.
+        let mut starts: Vec<TransferFunction> = before.into_iter().cloned().collect();
+        starts.extend(coarse.map_or(Vec::new(), |lines| mode_starts::starts(&lines, given)));
         starts.extend(shown.iter().cloned());
-        starts.extend(before.cloned());
         let on_short = Fitting::new(short, taps);
         let on_long = (short.len() != data.len()).then(|| Fitting::new(long, taps));
         let on_long = on_long.as_ref().unwrap_or(&on_short);
@@ -113,7 +114,7 @@ fn choose(
             given,
         };
         let reach = reach(before.is_none(), data.from_command);
-        let mut tried = ladder.climb(ladder.fitted(&starts, false), reach);
+        let mut tried = ladder.climb(ladder.fitted(&starts, before.is_some()), reach);
         let mut others = doubt_s(&tried);
         if data.from_command && given.delay_s.is_none() {
             let profiled = by_profile(&on_short, data, given, band_rad_s, tried.clone());

@@ -10,7 +10,7 @@ use super::normal::Normal;
 use super::parallel::{Parallel, TAPS};
 use super::parameters::{parameters, probes, with};
 use super::state_space::Measured;
-use super::stretch::{Bank, Column, Free, ROWS, Stride, Terms, combine, stretches};
+use super::stretch::{Bank, Column, Free, ROWS, Stride, Terms, combine, run_together, stretches};
 use super::transfer::TransferFunction;
 
 /// A model with the derivatives of its coefficients.
@@ -208,9 +208,7 @@ impl<'a> Rubbed<'a> {
 
     /// Goes over the next rows.
     fn run(&mut self, from: usize, rows: usize) {
-        for (bank, input) in self.banks.iter_mut().zip(self.inputs) {
-            bank.run(input, from, rows);
-        }
+        run_together(&mut self.banks, self.inputs, from, rows);
     }
 
     /// A column for each term.

@@ -85,18 +85,39 @@ pub fn measure(
     ))
 }
 
+/// How two signals cohere, from frequency to frequency.
+pub struct Coherent {
+    /// Squares of the coherence, 0 to 1.
+    pub coherence: Vec<f64>,
+    /// Power of the second signal.
+    pub power: Vec<f64>,
+    /// So many stretches count as independent: chance alone makes `1/K`.
+    pub independent: f64,
+}
+
+/// The coherence of two signals over short stretches.
+#[must_use]
+pub fn coherent(by: &[f64], signal: &[f64], period_s: f64) -> Coherent {
+    const STRETCHES: usize = 32;
+    let n = by.len().min(signal.len());
+    let length = (n / STRETCHES).clamp(16, 1 << 12);
+    let measured = over_stretches(by, signal, by, length, period_s);
+    Coherent {
+        coherence: measured.coherence,
+        power: measured.power,
+        independent: (0.53 * (2 * n / length).max(1) as f64).max(1.0),
+    }
+}
+
 /// Which share of a signal's power another one explains, as any linear system could
 /// make the one of the other: the mean coherence by power, less the `1/K` that K
 /// stretches seem to cohere by chance.
 #[must_use]
 pub fn explained_share(by: &[f64], signal: &[f64], period_s: f64) -> f64 {
-    const STRETCHES: usize = 32;
-    let n = by.len().min(signal.len());
-    let length = (n / STRETCHES).clamp(16, 1 << 12);
-    let measured = over_stretches(by, signal, by, length, period_s);
-    let chance = 1.0 / (0.53 * (2 * n / length).max(1) as f64).max(1.0);
+    let found = coherent(by, signal, period_s);
+    let chance = 1.0 / found.independent;
     let (mut explained, mut all) = (0.0, 0.0);
-    for (coherence, power) in measured.coherence.iter().zip(&measured.power) {
+    for (coherence, power) in found.coherence.iter().zip(&found.power) {
         explained += power * (coherence - chance) / (1.0 - chance);
         all += power;
     }

@@ -241,22 +241,82 @@ impl Bank {
             .collect()
     }
 
+    /// Takes in the samples that drive the rows from this one on.
+    fn take_in(&mut self, input: &[f64], from: usize) {
+        let next = (from + 1) * self.every;
+        let late = self.signals.iter_mut().take(TAPS + self.every - 1);
+        for (tap, column) in late.enumerate() {
+            delayed(column, input, next, self.lag + tap + 1, self.every);
+        }
+    }
+
     /// Runs over the rows from this one on.
     pub fn run(&mut self, input: &[f64], from: usize, rows: usize) {
+        self.take_in(input, from);
         let taps = TAPS + self.every - 1;
         let Some((late, mut out)) = self.signals.split_at_mut_checked(taps) else {
             return;
         };
-        let next = (from + 1) * self.every;
-        for (tap, column) in late.iter_mut().enumerate() {
-            delayed(column, input, next, self.lag + tap + 1, self.every);
-        }
         for chain in &mut self.chains {
             let Some((own, rest)) = out.split_at_mut_checked(2 * chain.drives.len()) else {
                 return;
             };
             chain.run(late, rows, own);
             out = rest;
+        }
+    }
+}
+
+/// Runs banks of one model without moves over the rows from this one on, each by an input of
+/// its own. They step together: what one waits for, the others fill.
+pub fn run_together(banks: &mut [Bank], inputs: &[Vec<f64>], from: usize, rows: usize) {
+    for (bank, input) in banks.iter_mut().zip(inputs) {
+        bank.take_in(input, from);
+    }
+    match banks.len() {
+        0 => {}
+        2 => step_together::<2>(banks, rows),
+        3 => step_together::<3>(banks, rows),
+        _ => banks
+            .chunks_mut(1)
+            .for_each(|one| step_together::<1>(one, rows)),
+    }
+}
+
+/// Steps all sections of so many banks that have taken in what drives them.
+fn step_together<const N: usize>(banks: &mut [Bank], rows: usize) {
+    let sections = banks.first().map_or(0, |bank| bank.chains.len());
+    for section in 0..sections {
+        let mut columns = [[[0.0; ROWS]; 2]; N];
+        let mut states = [[0.0; 2]; N];
+        let mut phi = [0.0; 4];
+        for ((bank, columns), state) in banks.iter().zip(&mut columns).zip(&mut states) {
+            if let Some(chain) = bank.chains.get(section)
+                && let (Some(drives), [own, ..]) = (chain.drives.first(), chain.states)
+            {
+                (phi, *state) = (chain.phi, own);
+                for (column, drive) in columns.iter_mut().zip(drives) {
+                    combine(column, drive, &bank.signals);
+                }
+            }
+        }
+        let [a, b, c, d] = phi;
+        for k in 0..rows.min(ROWS) {
+            for ([first, second], state) in columns.iter_mut().zip(&mut states) {
+                let [x, y] = *state;
+                *state = [a * x + b * y + first[k], c * x + d * y + second[k]];
+                (first[k], second[k]) = (x, y);
+            }
+        }
+        for ((bank, columns), state) in banks.iter_mut().zip(columns).zip(states) {
+            let at = TAPS + bank.every - 1 + 2 * section;
+            let slots = bank.signals.iter_mut().skip(at);
+            slots.zip(columns).for_each(|(slot, column)| *slot = column);
+            if let Some(chain) = bank.chains.get_mut(section)
+                && let [own, ..] = &mut chain.states
+            {
+                *own = state;
+            }
         }
     }
 }
@@ -268,7 +328,12 @@ fn delayed(column: &mut Column, input: &[f64], next: usize, late: usize, every: 
     let first = (next + missing * every).saturating_sub(late);
     let (none, rest) = column.split_at_mut(missing.min(ROWS));
     none.fill(0.0);
-    let mut present = input.get(first..).unwrap_or_default().iter().step_by(every);
+    let present = input.get(first..).unwrap_or_default();
+    if let Some(present) = present.get(..rest.len()).filter(|_| every == 1) {
+        rest.copy_from_slice(present);
+        return;
+    }
+    let mut present = present.iter().step_by(every);
     for slot in rest {
         *slot = present.next().copied().unwrap_or_default();
     }

@@ -197,6 +197,29 @@ fn a_drive_that_gives_little_of_what_is_asked() {
     }
 }
 
+/// A third of the time the axis is asked for what the drive gives, else for thirty times as
+/// much: the next size that is tried is far above the one that fits, and half of that
+/// distance below it there is no force.
+#[test]
+fn a_limit_far_below_the_next_size_is_looked_for_above_zero() {
+    let motion = Motion::sines(16_000, 0.15, &mut Random(8));
+    let free = Axis::PLAIN.force(&motion);
+    let mut sizes: Vec<f64> = free.iter().map(|f| f.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let limit = sizes[16_000 * 35 / 100];
+    let asked = |f: &f64| if f.abs() < limit { *f } else { 30.0 * f };
+    let wanted: Vec<f64> = free.iter().map(asked).collect();
+    let position = Axis::PLAIN.moved_by(&clipped(&wanted, limit));
+    let recording = recorded(&wanted, &position, SENSORS, &mut Random(1));
+    let found = rigid::fit_all(&[recording], None, None).unwrap();
+    let Some(Saturation::Beyond { limit: at, .. }) = found.saturation else {
+        panic!("{:?}", found.saturation)
+    };
+    // Between that size and the next one nothing was asked for: all limits are the same.
+    assert!(at > 0.0 && at < 30.0 * limit, "{at} {limit}");
+    assert_eq!(judgement::rigid(&found), Judgement::Saturated);
+}
+
 /// Nothing is found where nothing is: friction, noise, motions of all kinds.
 #[test]
 fn a_plain_axis_has_no_effects() {

@@ -30,8 +30,13 @@ impl Stands {
     }
 
     /// Takes the next move; false where it runs on from the one before it, though a rapid
-    /// stopped there.
-    pub(super) fn take(&mut self, machine: &Machine, original: &ExpectedMove, mv: &Move) -> bool {
+    /// stopped there. `original`: what it was, where it may have changed.
+    pub(super) fn take(
+        &mut self,
+        machine: &Machine,
+        original: Option<&ExpectedMove>,
+        mv: &Move,
+    ) -> bool {
         if mv.kind == MoveKind::Dwell {
             self.stop();
             return true;
@@ -39,8 +44,8 @@ impl Stands {
         if !mv.moves_axes() {
             return true;
         }
-        let blends = original.as_feed
-            && original.kind == MoveKind::Rapid
+        let was_rapid = |it: &ExpectedMove| it.as_feed && it.kind == MoveKind::Rapid;
+        let blends = original.is_some_and(was_rapid)
             && mv.path_mode == PathMode::LookAhead
             && machine.controller.planner.rapid_joint != RapidJoint::All;
         let right = self.stand || !(blends || self.must);
@@ -84,8 +89,8 @@ mod tests {
         };
         let run = |stops: [bool; 2]| {
             let mut stands = Stands::new();
-            let mut right = [stands.take(&machine, &unchanged(feed), feed), false, false];
-            for (index, (original, mv)) in [(&as_feed, &written), (&unchanged(last), last)]
+            let mut right = [stands.take(&machine, None, feed), false, false];
+            for (index, (original, mv)) in [(Some(&as_feed), &written), (None, last)]
                 .into_iter()
                 .enumerate()
             {

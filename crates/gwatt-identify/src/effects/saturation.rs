@@ -103,7 +103,12 @@ pub fn beyond(
         sizes.get(index).copied()
     };
     let limits: Vec<f64> = BELOW.iter().filter_map(|share| at(*share)).collect();
-    let rest = |limit: f64| error(all, asked, limit).map_or(f64::INFINITY, |(rest, ..)| rest);
+    // What is above the band is of no use for a search.
+    let mut light = all.to_vec();
+    for equations in &mut light {
+        equations.above = None;
+    }
+    let rest = |limit: f64| error(&light, asked, limit).map_or(f64::INFINITY, |(rest, ..)| rest);
     let each = limits.iter().map(|limit| (rest(*limit), *limit));
     let (mut least, mut best) = each.min_by(|a, b| a.0.total_cmp(&b.0))?;
     if least > 0.5 * (1.0 + BETTER) * now {
