@@ -206,7 +206,7 @@ fn a_signal_is_designed_for_a_recording_without_times() {
         shop.run(&[&common[..], &[recording], more].concat())
     };
     design("bare.csv", &[]).refused("or give --rate-hz");
-    design("bare.csv", &["--rate-hz", "-1"]).refused("--rate-hz -1 is not positive");
+    design("bare.csv", &["--rate-hz=-1"]).refused("--rate-hz -1 is not positive");
     design("x.csv", &["--rate-hz", "1000"]).refused("--rate-hz has no meaning");
     let [timed, bare] = [
         design("x.csv", &[]),

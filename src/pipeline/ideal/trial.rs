@@ -6,7 +6,7 @@ use crate::interpret::{Action, Move, MoveKind, Step};
 use crate::limit::{
     Change, Deeper, Depths, Limiter, Outcome, Paced, Paces, Permit, Place, Waiting,
 };
-use crate::machine::{AXES, Machine, PathMode};
+use crate::machine::{AXES, CornerRule, LookAhead, Machine, PathMode};
 use crate::pipeline::drive::{MoveSink, drive_end, drive_line_end, drive_step};
 use crate::pipeline::entry::Entry;
 use crate::pipeline::executor::Executor;
@@ -17,6 +17,8 @@ use crate::power::{Assessment, Assessor, Certificate, PowerModel, Want};
 
 /// Moves that are limited and judged in all rounds together.
 const EFFORT: usize = 200_000;
+/// How many times as long a move takes where drives make something of steps of speed.
+const STEPS: usize = 8;
 
 /// What a program does, in the order in which it is done.
 pub(super) struct Trial<'m> {
@@ -89,8 +91,15 @@ impl<'m> Trial<'m> {
     pub(super) fn soonest_s(&self, options: &Options, how: LimitOptions) -> Option<f64> {
         let mut depths = Depths::by_measure(Paces::default());
         let mut done = 0;
+        let rules = self.machine.controller.planner.look_ahead;
+        let linuxcnc = |rules: LookAhead| matches!(rules.corner, CornerRule::LinuxCnc { .. });
+        let each = if rules.is_some_and(|rules| !linuxcnc(rules)) {
+            STEPS
+        } else {
+            1
+        };
         while done < EFFORT {
-            done += self.moves.len().max(1);
+            done += each * self.moves.len().max(1);
             let outcomes = self.decide(options, how, &depths)?;
             let found = self.judge(options, &outcomes);
             if found.deeper.is_empty() {
