@@ -15,6 +15,9 @@ use super::spectrum::coherent;
 const SELDOM: f64 = 1e-4;
 /// The same as standard deviations of the sum over all frequencies.
 const SURE: f64 = 4.0;
+/// Frequencies with less of the input's power, by its highest, are those of its windows: what
+/// they seem to explain is one and the same.
+const NOTHING: f64 = 1e-6;
 /// Frequencies at which the noise's spectrum is looked at.
 const POINTS: usize = 200;
 
@@ -44,7 +47,10 @@ pub fn missed_energy(by: &[f64], white: &[f64], period_s: f64) -> f64 {
     // What came before the first whitened value.
     let by = by.get(by.len().saturating_sub(white.len())..);
     let found = coherent(by.unwrap_or_default(), white, period_s);
-    let bins = found.coherence.len() as f64;
+    let most = found.by_power.iter().copied().fold(0.0, f64::max);
+    let is_excited = |power: f64| power > NOTHING * most;
+    let excited = found.by_power.iter().filter(|power| is_excited(**power));
+    let bins = excited.count() as f64;
     let (k, chance) = (found.independent, 1.0 / found.independent);
     if bins < 1.0 || chance >= 0.5 {
         return 0.0;
@@ -52,11 +58,15 @@ pub fn missed_energy(by: &[f64], white: &[f64], period_s: f64) -> f64 {
     // What chance exceeds at one of all frequencies once in so many recordings.
     let highest = 1.0 - libm::pow(SELDOM / bins, 1.0 / (k - 1.0));
     let (mut sum, mut all, mut power, mut peaks) = (0.0, 0.0, 0.0, 0.0);
-    for (coherence, each) in found.coherence.iter().zip(&found.power) {
+    let all_bins = found.coherence.iter().zip(&found.power);
+    for ((coherence, each), by) in all_bins.zip(&found.by_power) {
+        power += each;
+        if !is_excited(*by) {
+            continue;
+        }
         let more = (coherence - chance) / (1.0 - chance);
         sum += coherence - chance;
         all += each * more;
-        power += each;
         if *coherence > highest {
             peaks += each * more;
         }

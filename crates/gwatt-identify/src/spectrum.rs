@@ -89,7 +89,9 @@ pub fn measure(
 pub struct Coherent {
     /// Squares of the coherence, 0 to 1.
     pub coherence: Vec<f64>,
-    /// Power of the second signal.
+    /// Power of the first signal, and of the second.
+    pub by_power: Vec<f64>,
+    /// See there.
     pub power: Vec<f64>,
     /// So many stretches count as independent: chance alone makes `1/K`.
     pub independent: f64,
@@ -102,8 +104,10 @@ pub fn coherent(by: &[f64], signal: &[f64], period_s: f64) -> Coherent {
     let n = by.len().min(signal.len());
     let length = (n / STRETCHES).clamp(16, 1 << 12);
     let measured = over_stretches(by, signal, by, length, period_s);
+    let own = over_stretches(by, by, by, length, period_s);
     Coherent {
         coherence: measured.coherence,
+        by_power: own.power,
         power: measured.power,
         independent: (0.53 * (2 * n / length).max(1) as f64).max(1.0),
     }
