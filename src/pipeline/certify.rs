@@ -387,6 +387,9 @@ impl<'m, 'r> Verdict<'m, 'r> {
         let original = self.originals.get(place).map(|original| &*original);
         self.done += usize::from(piece.is_none());
         let message = match (step, original) {
+            (Step::Move(mv), _) if piece.is_some() && !self.stands.take(self.machine, None, mv) => {
+                Some(NO_STOP)
+            }
             _ if piece.is_some() => match piece {
                 Some(Found::Wrong(what)) => Some(what),
                 Some(Found::Right) | None => None,

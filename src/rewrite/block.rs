@@ -144,6 +144,9 @@ impl<'m> Rewriter<'m> {
     /// each other, which leaves the block as it was.
     #[must_use]
     pub fn write(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
+        if label::names_program(view.block) && self.label.is_none() {
+            self.label = Label::of(view.text, view.block, self.machine);
+        }
         self.note_end(view.text);
         let facts = view.facts;
         if !(view.change.exact_stop || view.change.stop) {
@@ -340,10 +343,8 @@ impl<'m> Rewriter<'m> {
         };
         // Whatever the line above ends with, another may come before this one.
         self.stopped = false;
-        match view.block.delete_level {
-            0 => {}
-            1 => self.skip.push('/'),
-            level => self.skip = format!("/{level}"),
+        if view.block.delete_level > 0 {
+            label::delete_mark(view.text).clone_into(&mut self.skip);
         }
         self.label = Label::of(view.text, view.block, self.machine);
         let written = self.write(view, out);
@@ -461,13 +462,21 @@ impl<'m> Rewriter<'m> {
     }
 
     fn insert_line(&mut self, words: &str, out: &mut Vec<u8>) {
-        out.extend_from_slice(self.skip.as_bytes());
-        if let Some(label) = &mut self.label
-            && !label.is_taken
-        {
-            label.is_taken = true;
-            out.extend_from_slice(&label.text);
-        }
+        let label = self.label.as_mut().filter(|label| !label.is_taken);
+        let (first, second) = match label {
+            Some(label) => {
+                label.is_taken = true;
+                let (skip, text) = (self.skip.as_bytes(), label.text.as_slice());
+                if label.before_mark {
+                    (text, skip)
+                } else {
+                    (skip, text)
+                }
+            }
+            None => (self.skip.as_bytes(), &[][..]),
+        };
+        out.extend_from_slice(first);
+        out.extend_from_slice(second);
         out.extend_from_slice(words.as_bytes());
         out.extend_from_slice(&self.line_end);
         self.edited_lines += 1;

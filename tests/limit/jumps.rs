@@ -71,6 +71,32 @@ fn names_go_along() {
     ");
 }
 
+/// The mark for block delete stands where it stood, as it was written; the number of a program is
+/// its first word; labels of the ISG kernel have a colon.
+#[test]
+fn marks_and_numbers_keep_their_order() {
+    let loops = |block: &str| {
+        format!(
+            "G21 G90 G54\n#1=0\n{block}\nG1 X990. F500.\n#1=#1+1\nIF [#1 LT 3] GOTO 10\nG1 X1.\nM30\n"
+        )
+    };
+    let third = |text: &str| text.lines().nth(2).unwrap().to_owned();
+    let shop_of = shop("fanuc");
+    let number_first = limited(&shop_of, &loops("N10 /G0 X1000. Y800."), "");
+    assert_eq!(third(&number_first), "N10 /G4 P1", "{number_first}");
+    let mark_first = limited(&shop_of, &loops("/2 N10 G0 X1000. Y800."), "");
+    assert_eq!(third(&mark_first), "/2N10 G4 P1", "{mark_first}");
+    let program = "O1000 G21 G90 G54 G0 X1000. Y800.\nG1 X990. F500.\nM30\n";
+    let text = limited(&shop_of, program, "");
+    assert!(
+        text.starts_with("O1000 G4 P1\nG9 G21 G90 G54 G1 X1000. Y800."),
+        "{text}"
+    );
+    let isg = "G71 G90\nP1=0\nN10: G0 X1000 Y800\nG1 X990 F500\nP1=P1+1\n$IF P1<3\n$GOTO N10\n$ENDIF\nM30\n";
+    let text = limited(&shop("isg"), isg, "");
+    assert!(text.contains("\nN10: G"), "{text}");
+}
+
 /// Without a line before it a block keeps its label, and so does one that nothing changes.
 #[test]
 fn labels_stay_where_nothing_stands_before() {

@@ -114,6 +114,31 @@ fn reference_points_that_nobody_gave() {
     }
 }
 
+/// A point that is stored counts, one at machine zero too; axis by axis, and before reference_mm.
+#[test]
+fn reference_points_that_are_stored() {
+    let shop = Shop::mill(
+        "linuxcnc",
+        "peak_power_w = 5000",
+        "[path]\nrapid = \"linear\"",
+        "reference_mm = 200",
+    );
+    let end_of_x = |program: &str| -> f64 {
+        shop.put("a.nc", program);
+        let (code, out, errors) = shop.run("moves a.nc");
+        assert_eq!(code, 0, "{errors}");
+        let last: serde_json::Value = serde_json::from_str(out.lines().last().unwrap()).unwrap();
+        last["end"]["X"].as_f64().unwrap()
+    };
+    assert_eq!(end_of_x("G21 G90\nG0 X50\nG28\n"), 200.0);
+    assert_eq!(
+        end_of_x("G21 G90\nG53 G0 X0 Y0 Z0\nG28.1\nG0 X50\nG28\n"),
+        0.0
+    );
+    assert_eq!(end_of_x("G21 G90\n#5161=0\nG0 X50\nG28 X50\n"), 0.0);
+    assert_eq!(end_of_x("G21 G90\n#5162=7\nG0 X50\nG28 X50\n"), 200.0);
+}
+
 /// What the places of a program rest on is said with the certificate.
 #[test]
 fn the_certificate_names_where_places_come_from() {

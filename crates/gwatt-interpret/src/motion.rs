@@ -259,8 +259,7 @@ impl Control<'_> {
             moving.insert(arc.plane[1]);
         }
         let (length_mm, linear) = path_length(start, end, moving, arc.as_ref());
-        let way = (end, arc.as_ref(), length_mm, linear);
-        let Some(mut feed_mm_s) = self.speed_of(run, kind, given_mm_s, way) else {
+        let Some(mut feed_mm_s) = self.speed_of(run, &way, given_mm_s, (length_mm, linear)) else {
             return;
         };
         let mut rapid_factor = self.knobs.rapid_factor;
@@ -323,15 +322,16 @@ impl Control<'_> {
     }
 
     /// The speed that a move is given, by its F or otherwise, mm/s; `None` when it was reported
-    /// that there is none. `way`: its end, its arc, its length and whether linear axes move.
+    /// that there is none. The length of its way, and whether linear axes move.
     #[inline]
     fn speed_of(
         &mut self,
         run: &mut Run<'_, '_>,
-        kind: MoveKind,
+        way: &Way<'_>,
         given_mm_s: Option<f64>,
-        (end, arc, length_mm, linear): (&AxisValues, Option<&Arc>, f64, bool),
+        (length_mm, linear): (f64, bool),
     ) -> Option<f64> {
+        let (kind, end) = (way.kind, way.end);
         let given = match kind {
             MoveKind::Thread | MoveKind::Tap => self.special.speed_mm_s,
             _ => given_mm_s,
@@ -342,9 +342,9 @@ impl Control<'_> {
         if kind == MoveKind::Rapid {
             return Some(f64::INFINITY);
         }
-        let speed_mm_s = self.feed_speed(run, end, arc, length_mm, linear)?;
+        let speed_mm_s = self.feed_speed(run, end, way.arc.as_ref(), length_mm, linear)?;
         Some(match kind {
-            MoveKind::Feed if self.position.unknown.is_empty() => {
+            MoveKind::Feed if way.unknown_start.is_empty() => {
                 let from = &self.position.at;
                 speed_mm_s.min(self.machine.max_feed_mm_s(from, end, length_mm))
             }

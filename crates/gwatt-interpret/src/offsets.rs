@@ -178,6 +178,12 @@ impl Offsets {
         })
     }
 
+    /// The value of one axis at `first` and its number, in mm, where it is known.
+    pub(super) fn known_from(&self, first: u32, axis: usize) -> Option<f64> {
+        let value = (axis < PARAMETER_AXES).then(|| self.known(first + axis as u32))??;
+        Some(value * self.native(axis))
+    }
+
     /// Stores the value of one axis, in mm, at `first` and its number.
     pub(super) fn store_axis(&mut self, first: u32, axis: usize, value_mm: f64) {
         if axis < PARAMETER_AXES {

@@ -75,22 +75,26 @@ impl Control<'_> {
         span: Span,
         run: &mut Run<'_, '_>,
     ) -> AxisValues {
-        let offsets = self.position.offsets();
-        if self.rules.places_in_parameters {
-            let point = offsets.axes_from(REFERENCE[second]);
-            if offsets.known || point != [0.0; AXES] {
-                return point;
-            }
-        }
         let mut point = [0.0; AXES];
         for axis in named.iter() {
-            let data = self.machine.axes[axis].as_ref();
-            match data.and_then(|data| data.reference_mm) {
-                Some(place_mm) if second == 0 => point[axis] = place_mm,
-                _ => note_machine_zero(span, run),
+            match self.known_reference(second, axis) {
+                Some(place_mm) => point[axis] = place_mm,
+                None => note_machine_zero(span, run),
             }
         }
         point
+    }
+
+    /// The place of one axis at that point, where it is known. What grbl's homing leads to is
+    /// not its G28.
+    pub(super) fn known_reference(&self, second: usize, axis: usize) -> Option<f64> {
+        let first = *REFERENCE.get(second)?;
+        let stored = self.rules.places_in_parameters;
+        let known = stored.then(|| self.position.offsets().known_from(first, axis));
+        let homes = stored && self.machine.controller.language.loose_o_words;
+        let data = self.machine.axes[axis].as_ref();
+        let given = data.and_then(|data| data.reference_mm);
+        known.flatten().or(given.filter(|_| second == 0 && !homes))
     }
 
     /// The share of the rapid speed at which the axes return to the reference point: no

@@ -2,8 +2,7 @@
 
 use super::code::Motion;
 use super::execute::Interpreter;
-use super::offsets::REFERENCE;
-use gwatt_machine::{AXES, AxisId, AxisSet, AxisValues};
+use gwatt_machine::{AxisId, AxisSet, AxisValues};
 
 impl Interpreter<'_> {
     /// Whether the values of a canned cycle are in force.
@@ -54,15 +53,9 @@ impl Interpreter<'_> {
     /// Whether it is known where G28 leads these axes, or, `second`, G30.
     #[must_use]
     pub fn knows_reference(&self, second: bool, moving: AxisSet) -> bool {
-        let control = &self.control;
-        let offsets = control.position.offsets();
-        let stored =
-            offsets.known || offsets.axes_from(REFERENCE[usize::from(second)]) != [0.0; AXES];
-        let given = |axis: usize| {
-            let data = control.machine.axes[axis].as_ref();
-            data.is_some_and(|data| data.reference_mm.is_some())
-        };
-        control.rules.places_in_parameters && stored || !second && moving.iter().all(given)
+        let second = usize::from(second);
+        let known = |axis| self.control.known_reference(second, axis).is_some();
+        moving.iter().all(known)
     }
 
     /// Why the places of the program may not be those of the machine that they are taken
