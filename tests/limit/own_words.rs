@@ -114,7 +114,7 @@ fn reference_points_that_nobody_gave() {
     }
 }
 
-/// A point that is stored counts, one at machine zero too; axis by axis, and before reference_mm.
+/// A point that is stored counts, one at machine zero too; axis by axis, and before `reference_mm`.
 #[test]
 fn reference_points_that_are_stored() {
     let shop = Shop::mill(
