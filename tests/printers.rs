@@ -1,6 +1,7 @@
 //! The language of 3D printers: each construct by a program worked by hand,
 //! with the source of its meaning.
 
+mod heaters;
 mod limits;
 mod lines;
 mod macros;
@@ -296,64 +297,6 @@ fn kept_positions() {
     5 feed Y9.000>5.000 v10.000
     ");
     assert_snapshot!(marlin("G61 S1\n"), @"no-such-position: G61 to a position that G60 has not kept");
-}
-
-/// Loads by value (Marlin M104, M140, M106, M107): S0 switches off, after the
-/// block; a second fan or tool keeps its load on.
-#[test]
-fn heaters_and_fans() {
-    assert_snapshot!(marlin(
-        "M140 S60\nM104 S200\nG1 X1 F60\nM109 S0\nM106 S255\nG1 X2\nM106 P1\nM107\nG1 X3\n\
-         M107 P1\nM190 R0\nG1 X4\nM104 T1 S9\nM104 S0\nG1 X5\nM81\nG1 X6\n"
-    ), @r"
-    3 feed X0.000>1.000 v1.000 loads 011
-    6 feed X1.000>2.000 v1.000 loads 110
-    9 feed X2.000>3.000 v1.000 loads 110
-    12 feed X3.000>4.000 v1.000
-    15 feed X4.000>5.000 v1.000 loads 001
-    17 feed X5.000>6.000 v1.000
-    ");
-    assert_snapshot!(klipper(
-        "SET_HEATER_TEMPERATURE HEATER=heater_bed TARGET=60\nSET_FAN_SPEED FAN=aux SPEED=0.5\n\
-         G1 X1 F60\nTURN_OFF_HEATERS\nSET_FAN_SPEED FAN=aux SPEED=0\nG1 X2\n"
-    ), @r"
-    3 feed X0.000>1.000 v1.000 a1000 loads 110
-    6 feed X1.000>2.000 v1.000 a1000 loads 100
-    ");
-    let bare = load(
-        "schema = 1\nname = \"t\"\ncontroller = \"marlin\"\n[converter]\npeak_power_w = 1e5\n\
-         [axes.X]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10\n",
-    );
-    assert_snapshot!(run(&bare, "M104 S200\nM109 S0\n"), @"note heaters");
-}
-
-/// Where all words switch by their value no other word is needed to switch off.
-#[test]
-fn heaters_follow_their_target() {
-    let text = |controller: &str, load: &str| {
-        format!(
-            "schema = 1\nname = \"t\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e5\n\
-             [axes.X]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10\n[[load]]\n{load}\npower_w = 40\n"
-        )
-    };
-    let heater = text("marlin", "on = [\"M104\", \"M109\"]");
-    assert_snapshot!(run(&load(&heater), "M104 S200\nG1 X1 F60\nM104 S0\nG1 X2\nM109 R180\nG1 X3\n"), @r"
-    2 feed X0.000>1.000 v1.000 loads 001
-    4 feed X1.000>2.000 v1.000
-    6 feed X2.000>3.000 v1.000 loads 001
-    ");
-    // Elsewhere, and with words that only switch on, something must switch it off.
-    for file in [
-        text("fanuc", "on = \"M104\""),
-        text("marlin", "on = [\"M104\", \"M80\"]"),
-    ] {
-        let (errors, missing) = (
-            Machine::from_toml("test.toml", &file),
-            "`off` is missing in `load`",
-        );
-        let errors = errors.expect_err("nothing switches it off");
-        assert!(errors.iter().any(|it| it.message == missing), "{errors:?}");
-    }
 }
 
 /// Marlin M92: what the program states is taken for true, but not two values.

@@ -10,7 +10,7 @@ use crate::pipeline::judge::{Flight, Judge, Queue};
 use crate::pipeline::row::Detail;
 use crate::pipeline::spindle_rows::SpindleRows;
 use crate::pipeline::totals::Totals;
-use crate::power::{Assessment, Want};
+use crate::power::{Assessment, Assessor, Want};
 
 /// Counts judged moves, and hands them to the limiter.
 struct Counted<'a, 'm> {
@@ -33,64 +33,53 @@ impl MoveSink for Counted<'_, '_> {
     }
 }
 
-impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
+impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
     /// Lets a block wait, and judges its moves.
     pub(super) fn judge_waiting(&mut self, entry: Box<Entry>) {
         let number = self.first + self.entries.len() as u64;
         self.entries.push_back(entry);
-        let Self {
-            assessor,
-            limiter,
-            tally,
-            entries,
-            first,
-            flights,
-            judged,
-            outcomes,
-            spindle,
-            ..
-        } = self;
-        let entries = &*entries;
+        let mut mode = self.mode;
+        let (assessor, mut counted) = self.counted();
+        let entries = counted.judge.queue.entries;
         let Some(entry) = entries.back() else { return };
-        let moved = entry.moves_on();
-        // After the last step the line ends.
-        let steps = entry.steps.iter().map(Some).chain([None]);
-        for (index, step) in steps.enumerate() {
-            if let Some(Step::Move(mv)) = step {
-                self.mode = mv.path_mode;
-                flights.push_back(Flight {
-                    entry: number,
-                    step: index,
-                    assessment: None,
-                });
-            }
-            let mut counted = Counted {
-                tally,
-                spindle,
-                detail: self.detail,
-                judge: Judge {
-                    limiter,
-                    queue: Queue {
-                        machine: self.machine,
-                        entries,
-                        first: *first,
-                        flights,
-                    },
-                    judged,
-                    outcomes,
-                },
-            };
-            match step {
-                Some(step) => {
-                    let text = match step {
-                        Step::Move(mv) => entry.text_of(mv),
-                        Step::Action(_) => b"",
-                    };
-                    drive_step(assessor, step, text, &mut counted);
+        for (index, step) in entry.steps.iter().enumerate() {
+            let text = match step {
+                Step::Move(mv) => {
+                    mode = mv.path_mode;
+                    counted.judge.queue.flights.push_back(Flight {
+                        entry: number,
+                        step: index,
+                        assessment: None,
+                    });
+                    entry.text_of(mv)
                 }
-                None => drive_line_end(assessor, moved, &mut counted),
-            }
+                Step::Action(_) => b"",
+            };
+            drive_step(assessor, step, text, &mut counted);
         }
+        drive_line_end(assessor, entry.moves_on(), &mut counted);
+        self.mode = mode;
+    }
+
+    /// What judges moves, and what takes them then.
+    fn counted(&mut self) -> (&mut Assessor<'m>, Counted<'_, 'm>) {
+        let counted = Counted {
+            tally: &mut self.tally,
+            spindle: &mut self.spindle,
+            detail: self.detail,
+            judge: Judge {
+                limiter: &mut self.limiter,
+                queue: Queue {
+                    machine: self.machine,
+                    entries: &self.entries,
+                    first: self.first,
+                    flights: &mut self.flights,
+                },
+                judged: &mut self.judged,
+                outcomes: &mut self.outcomes,
+            },
+        };
+        (&mut self.assessor, counted)
     }
 
     /// Judges and decides the moves of a block none of which has to wait; of a
@@ -138,34 +127,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
 
     /// Judges and decides what is left at the end.
     pub(super) fn finish_moves(&mut self) {
-        let Self {
-            assessor,
-            limiter,
-            tally,
-            entries,
-            first,
-            flights,
-            judged,
-            outcomes,
-            spindle,
-            ..
-        } = self;
-        let mut counted = Counted {
-            tally,
-            spindle,
-            detail: self.detail,
-            judge: Judge {
-                limiter,
-                queue: Queue {
-                    machine: self.machine,
-                    entries,
-                    first: *first,
-                    flights,
-                },
-                judged,
-                outcomes,
-            },
-        };
+        let (assessor, mut counted) = self.counted();
         drive_end(assessor, &mut counted);
         counted.judge.finish();
         self.decide();
