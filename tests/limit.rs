@@ -2,8 +2,10 @@
 
 mod ahead;
 mod blends;
+mod called_cycles;
 mod company;
 mod cycles;
+mod feed_modes;
 mod figures;
 mod first_feed;
 mod flow_through;

@@ -30,6 +30,7 @@ mod curve;
 mod drives;
 mod jerk_limits;
 mod phases;
+mod places;
 mod over_time;
 mod power;
 mod trace;

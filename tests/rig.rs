@@ -120,6 +120,8 @@ fn controller() -> Controller {
             mill_cycles: false,
             pecks_return_to_r: false,
             peck_clearance_mm: 1.0,
+            escape_mm: None,
+            groove_return_mm: None,
             arc_tolerance_mm: None,
             kept_variables: Vec::new(),
             dialect: gwatt::machine::Dialect::default(),

@@ -1,6 +1,6 @@
 //! What would bring a move down, in a few words.
 
-use super::entry::{positions, turns_apart};
+use super::entry::positions;
 use crate::interpret::{FeedMode, Interpreter, Motion, Move, MoveKind};
 use crate::limit::{Allowed, Change, Ends, Law, LimitOptions, Permit, Solver, Strategy};
 use crate::machine::{AxisValues, Machine, RapidJoint};
@@ -79,11 +79,10 @@ impl<'m> Adviser<'m> {
                 .to_owned();
         }
         let per_minute = at.feed_mode == FeedMode::PerMinute;
-        let apart = at.feed_mode == FeedMode::PerRevolution && turns_apart(self.machine);
         let permit = Permit {
             edit: true,
             feed_word: per_minute,
-            as_feed: per_minute || apart,
+            as_feed: true,
             exact_stop: false,
             stands: mv.path_mode == crate::machine::PathMode::ExactStop,
             line_before: true,

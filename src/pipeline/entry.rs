@@ -200,6 +200,8 @@ impl Entry {
         let skips = self.skips || !machine.controller.language.block_delete;
         let edit = self.keeps_its_words(skips);
         let no_feed = self.cannot_get_feed(machine, mv);
+        // A rapid gets a feed per minute of its own, whatever F means.
+        let apart = mv.kind == MoveKind::Rapid && !self.sets_feed_mode();
         let feed = [
             (facts.homes, "it homes the axes"),
             (facts.dwell_takes_feed, "an F in it would be its dwell"),
@@ -209,21 +211,18 @@ impl Entry {
                 "its feed is worked out by the program",
             ),
             (
-                self.feed_mode == FeedMode::InverseTime,
+                self.feed_mode == FeedMode::InverseTime && !apart,
                 "its feed is an inverse time (G93)",
             ),
             (
-                self.feed_mode == FeedMode::PerRevolution
-                    && !(mv.kind == MoveKind::Rapid
-                        && turns_apart(machine)
-                        && !self.sets_feed_mode()),
+                self.feed_mode == FeedMode::PerRevolution && !apart,
                 PER_REVOLUTION,
             ),
         ];
         let rapid = self.stays_rapid(machine, stays);
         let reasons = [edit, first_reason(&feed), first_reason(&rapid)];
         let reason_text = reasons.into_iter().flatten().next().unwrap_or("");
-        let reason_help = help(machine, &self.block, &self.facts, reason_text);
+        let reason_help = help(machine, &self.facts, reason_text);
         let feed_accel_mm_s2 = self
             .knobs
             .as_ref()
@@ -345,7 +344,7 @@ impl Entry {
                 facts.machine_coordinates && !family.feeds_in_machine_coordinates,
                 MACHINE_COORDINATES,
             ),
-            (facts.reference, REFERENCE),
+            (facts.reference.is_some(), REFERENCE),
             (
                 self.works_out_motion(),
                 "its motion word is worked out by the program",
@@ -371,7 +370,9 @@ impl Entry {
     /// Whether one of its words may say what F means.
     fn sets_feed_mode(&self) -> bool {
         let mut words = self.block.words.iter();
-        words.any(|word| word.letter == b'G' && (93.0..=99.0).contains(&word.value))
+        let says =
+            |number: f64| (93.0..=99.0).contains(&number) || (930.0..=979.0).contains(&number);
+        words.any(|word| word.letter == b'G' && says(word.value))
     }
 
     /// Why a move for which no F is in force cannot have one.
@@ -425,17 +426,6 @@ pub(super) fn positions(machine: &Machine, motion: Motion, mv: &Move) -> bool {
         && motion == Motion::Rapid
         && mv.kind == MoveKind::Feed
         && !mv.moving.contains(AxisId::E as usize)
-}
-
-/// Whether the mode of the feed is a matter of its own: with others it also switches
-/// constant surface speed off.
-pub(super) fn turns_apart(machine: &Machine) -> bool {
-    machine
-        .controller
-        .language
-        .family
-        .facts()
-        .feed_mode_is_apart
 }
 
 /// The knobs in force, where the controller has any.

@@ -175,7 +175,7 @@ fn need(entry: &Entry, before: &Mark) -> Need {
     // Under compensation these are moves of earlier blocks, which have had their turn.
     let obeys = !facts.compensated
         && entry.moves_by(|kind| !matches!(kind, MoveKind::Rapid | MoveKind::Dwell));
-    let per_minute = before.per_minute && entry.feed_mode == FeedMode::PerMinute;
+    let per_minute = before.per_minute() && entry.feed_mode == FeedMode::PerMinute;
     if !shows && !obeys && !takes_word {
         return if per_minute || facts.compensated {
             Need::Nothing

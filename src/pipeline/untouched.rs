@@ -4,7 +4,6 @@ use super::line_key::IN_A_FILE;
 use crate::interpret::{Facts, TOOL_CHANGE_UNKNOWN};
 use crate::machine::{Lathe, Machine, PathMode};
 use crate::motion::{CYCLE, TURNING_CYCLE};
-use crate::syntax::Block;
 
 /// Why a rapid is not written as a feed, where the program can help.
 pub(super) const PER_REVOLUTION: &str = "the feed in force is per revolution";
@@ -17,8 +16,9 @@ pub(super) const MACHINE_COORDINATES: &str = "G53 is for rapids";
 pub(super) const WITHOUT_STOP: &str = "without its stop the corner would be rounded";
 
 /// What helps where something may not be changed for this reason.
-pub(super) fn help(machine: &Machine, block: &Block, facts: &Facts, reason: &str) -> &'static str {
+pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static str {
     let language = &machine.controller.language;
+    let further = facts.reference.is_some_and(|point| point > 1);
     match reason {
         CYCLE => {
             "--allow expand writes canned cycles out as single blocks; where it taps, more \
@@ -27,12 +27,14 @@ pub(super) fn help(machine: &Machine, block: &Block, facts: &Facts, reason: &str
         TURNING_CYCLE if facts.cycle => {
             "--allow expand writes turning cycles out as single blocks, where they cut no thread"
         }
-        REFERENCE if goes_elsewhere(block) => {
+        REFERENCE if further => {
             if language.family.facts().reference_in_parameters {
                 "the way is gone by a feed before it where the point is known: give the \
                  control's --parameters"
             } else {
-                "only the control knows this point: write the way by hand, as feeds before it"
+                "the way is gone by a feed before it where the places are known: \
+                 further_reference_mm of the axes, the work offset ([offsets] or --parameters) \
+                 and the tool's length (--tool-table)"
             }
         }
         REFERENCE if language.family.facts().reference_in_parameters => {
@@ -70,11 +72,4 @@ pub(super) fn help(machine: &Machine, block: &Block, facts: &Facts, reason: &str
         }
         _ => "",
     }
-}
-
-/// Whether a block goes to another reference point than the first: G30, G75.
-pub(super) fn goes_elsewhere(block: &Block) -> bool {
-    let other = |value: f64| value == 30.0 || value == 75.0;
-    let mut words = block.words.iter();
-    words.any(|word| word.letter == b'G' && other(word.value))
 }

@@ -17,9 +17,9 @@ use super::rapid_mark::Comment;
 use super::state::{Mark, Written, motion_word};
 use super::turned::{InForce, Turned};
 use crate::edit::{Edit, apply};
-use crate::interpret::{Facts, KnobState, Motion, ToolWords};
+use crate::interpret::{Facts, FeedMode, KnobState, Motion, ToolWords};
 use crate::limit::Change;
-use crate::machine::{Lathe, Machine, ToolChange};
+use crate::machine::{Machine, ToolChange};
 use crate::source::split_line_end;
 use crate::syntax::{Block, Word};
 
@@ -177,11 +177,12 @@ impl<'m> Rewriter<'m> {
             self.write_pieces(view, out);
             self.turn_knobs(view.change, view, out);
         }
-        // Its F is by the minute where the others are by the revolution.
-        let apart = view.change.as_feed && !view.after.per_minute;
+        // Its F is by the minute where the others are by the revolution or an inverse time.
+        let apart = view.change.as_feed && !view.after.per_minute();
         if apart {
             self.restore(view.before, view.knobs, out);
-            self.insert_line(self.feed_modes()[0], out);
+            let [per_minute, _] = view.after.per_minute_and_back();
+            self.insert_line(&g_word(per_minute), out);
             self.written.feed = None;
         }
         if view.stops && !self.stopped {
@@ -206,7 +207,7 @@ impl<'m> Rewriter<'m> {
             self.insert_stop(out);
         }
         if apart {
-            self.back_to_revolutions(view, out);
+            self.back_to_feed_mode(view, out);
         }
         if let Some(words) = tool_after {
             self.line_after(tool_line(&words, view.text).as_bytes(), view, out);
@@ -272,25 +273,19 @@ impl<'m> Rewriter<'m> {
         }
     }
 
-    /// The words for a feed per minute and per revolution.
-    fn feed_modes(&self) -> [&'static str; 2] {
-        match self.machine.controller.language.dialect.lathe {
-            Some(Lathe::A) => ["G98", "G99"],
-            _ => ["G94", "G95"],
-        }
-    }
-
-    /// A line that puts back what was in force, after a feed per minute among feeds per
-    /// revolution.
-    fn back_to_revolutions(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) {
+    /// A line that puts back what was in force, after a feed per minute among others.
+    fn back_to_feed_mode(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) {
         self.complete_line(out);
-        let [_, per_revolution] = self.feed_modes();
         let mut words = String::new();
         if let Some(digit) = view.after.motion.digit() {
             let _ = write!(words, "G{} ", char::from(digit));
         }
-        words.push_str(per_revolution);
-        if let Some(feed) = &view.after.feed {
+        let [_, back] = view.after.per_minute_and_back();
+        words.push_str(&g_word(back));
+        // Under an inverse time each block has its own F.
+        let feed = view.after.feed.as_ref();
+        let feed = feed.filter(|_| view.after.feed_mode == FeedMode::PerRevolution);
+        if let Some(feed) = feed {
             let _ = write!(words, " F{}", feed_again(feed, view.after.mm_per_unit));
         }
         self.insert_line(&words, out);
@@ -394,7 +389,7 @@ impl<'m> Rewriter<'m> {
             self.written.motion = original.motion;
         }
         let feed = original.feed_value();
-        if self.written.feed != feed && original.per_minute {
+        if self.written.feed != feed && original.per_minute() {
             let family = self.machine.controller.language.family.facts();
             if words.is_empty() && family.lines_need_command && feed.is_some() {
                 // An arc it reads only with its centre: a line takes its place.
@@ -481,6 +476,11 @@ impl<'m> Rewriter<'m> {
         out.extend_from_slice(&self.line_end);
         self.edited_lines += 1;
     }
+}
+
+/// A G word by its number, times ten.
+fn g_word(number: u16) -> String {
+    format!("G{}", f64::from(number) / 10.0)
 }
 
 /// The first word of a block that stays in it.

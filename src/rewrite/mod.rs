@@ -13,6 +13,7 @@
 
 mod beforehand;
 mod block;
+mod called_cycle;
 mod contour;
 mod knob_line;
 mod number;
@@ -24,6 +25,7 @@ mod turned;
 
 pub use beforehand::Return;
 pub use block::{BlockView, FeedAround, PieceWords, Rewriter};
+pub use called_cycle::{CallingBlock, without_modal_call};
 pub use contour::contour_as_comment;
 pub(crate) use knob_line::lines as knob_lines;
 pub(crate) use number::has_at_most;

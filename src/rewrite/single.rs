@@ -72,7 +72,7 @@ pub(super) struct Lines<'a> {
     /// The last line is a dwell.
     stopped: bool,
     /// The feed in force, mm/s, as soon as one is known.
-    feed_mm_s: Option<f64>,
+    pub(super) feed_mm_s: Option<f64>,
 }
 
 impl<'m> Singles<'m> {
@@ -388,7 +388,7 @@ fn as_move(step: &Step) -> Option<&Move> {
 }
 
 /// What a cycle does besides moving.
-fn one_action(action: &Action, lines: &mut Lines<'_>) -> Result<(), &'static str> {
+pub(super) fn one_action(action: &Action, lines: &mut Lines<'_>) -> Result<(), &'static str> {
     match action.kind {
         ActionKind::Spindle => {
             lines.push(&format!("M{}", action.value));

@@ -9,8 +9,10 @@ pub struct Mark {
     pub motion: Motion,
     /// The F in force, with its text.
     pub feed: Option<Feed>,
-    /// Whether F means length per minute.
-    pub per_minute: bool,
+    /// What F means.
+    pub feed_mode: FeedMode,
+    /// The number of the G word that says so, times ten.
+    pub feed_mode_word: u16,
     /// Millimetres in a program unit.
     pub mm_per_unit: f64,
     /// How corners may be taken, where a word of the program has said so.
@@ -30,7 +32,8 @@ impl Mark {
         Self {
             motion: modal.motion,
             feed: modal.feed,
-            per_minute: modal.feed_mode == FeedMode::PerMinute,
+            feed_mode: modal.feed_mode,
+            feed_mode_word: modal.feed_mode_word,
             mm_per_unit: modal.mm_per_unit,
             corner: modal.corner_known.then_some(modal.corner),
         }
@@ -63,6 +66,25 @@ impl Mark {
         let text = format!("{}", length_mm / self.mm_per_unit);
         let read: f64 = text.parse().ok()?;
         (read * self.mm_per_unit == length_mm).then(|| format!(" {letter}{text}"))
+    }
+
+    /// Whether F means length per minute.
+    #[must_use]
+    pub fn per_minute(&self) -> bool {
+        self.feed_mode == FeedMode::PerMinute
+    }
+
+    /// The numbers of the G words that let F mean length per minute for one block, and then
+    /// again what it means here, each times ten. On SINUMERIK those of constant surface
+    /// speed say it too ("Constant cutting rate": G96 is with G95, G961 with G94).
+    pub(super) fn per_minute_and_back(&self) -> [u16; 2] {
+        let per_minute = match self.feed_mode_word {
+            990 => 980,
+            960 => 9610,
+            970 => 9710,
+            _ => 940,
+        };
+        [per_minute, self.feed_mode_word]
     }
 
     /// The feed as value and unit.

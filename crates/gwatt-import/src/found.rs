@@ -62,6 +62,8 @@ pub(crate) struct FoundAxis {
     /// Per minute.
     pub(crate) reference_speed: Option<Figure>,
     pub(crate) reference: Option<Figure>,
+    /// Places of further reference points, in order.
+    pub(crate) further_references: Vec<Figure>,
     /// How far the acceleration exceeds the setting.
     pub(crate) servo_factor: Option<Figure>,
     /// Lines of comment above the table.

@@ -129,23 +129,34 @@ fn axis_table(out: &mut String, id: AxisId, axis: &FoundAxis, found: &Found) {
         ("linear", "mm")
     };
     let _ = writeln!(out, "kind = \"{kind}\"");
-    let mut field = |key: String, figure: &Option<Figure>| {
-        if let Some(figure) = figure {
-            line(
-                out,
-                &format!("{key} = {}", shown(figure.value)),
-                &figure.source,
-            );
-        }
-        figure.is_some()
-    };
-    let rapid = field(format!("rapid_{length}_min"), &axis.rapid);
-    field(format!("reference_{length}_min"), &axis.reference_speed);
-    field(format!("reference_{length}"), &axis.reference);
-    let accel = field(format!("accel_{length}_s2"), &axis.accel)
-        || field("accel_time_s".to_owned(), &axis.accel_time_s);
-    field("servo_factor_motor".to_owned(), &axis.servo_factor);
-    field("servo_factor_regen".to_owned(), &axis.servo_factor);
+    let rapid = field(out, &format!("rapid_{length}_min"), axis.rapid.as_ref());
+    field(
+        out,
+        &format!("reference_{length}_min"),
+        axis.reference_speed.as_ref(),
+    );
+    field(out, &format!("reference_{length}"), axis.reference.as_ref());
+    if let (Some(first), Some(last)) = (
+        axis.further_references.first(),
+        axis.further_references.last(),
+    ) {
+        let places = axis.further_references.iter().map(|it| shown(it.value));
+        let places: Vec<String> = places.collect();
+        let source = match places.len() {
+            1 => first.source.clone(),
+            _ => format!("{} to {}", first.source, last.source),
+        };
+        let places = places.join(", ");
+        line(
+            out,
+            &format!("further_reference_{length} = [{places}]"),
+            &source,
+        );
+    }
+    let accel = field(out, &format!("accel_{length}_s2"), axis.accel.as_ref())
+        || field(out, "accel_time_s", axis.accel_time_s.as_ref());
+    field(out, "servo_factor_motor", axis.servo_factor.as_ref());
+    field(out, "servo_factor_regen", axis.servo_factor.as_ref());
     if !rapid {
         asked(out, &format!("rapid_{length}_min = "), "not in the file");
     }
@@ -159,6 +170,15 @@ fn axis_table(out: &mut String, id: AxisId, axis: &FoundAxis, found: &Found) {
         wrapped(out, "# ", "# ", hint);
     }
     drive(out, id, axis, found);
+}
+
+/// A field with its source; whether the file has it.
+fn field(out: &mut String, key: &str, figure: Option<&Figure>) -> bool {
+    if let Some(figure) = figure {
+        let text = format!("{key} = {}", shown(figure.value));
+        line(out, &text, &figure.source);
+    }
+    figure.is_some()
 }
 
 /// What the file cannot know.

@@ -134,6 +134,7 @@ impl<'m> Interpreter<'m> {
         }
         *facts = Facts::default();
         self.execute_any(line, text, block, Effects::new(steps, facts, diagnostics));
+        self.control.position.apart = self.control.apart_from_program();
         self.control.check_expression();
         // It may have gone the short way with values that were worked out.
         facts.plain = false;

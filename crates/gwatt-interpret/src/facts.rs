@@ -38,8 +38,9 @@ pub struct Facts {
     pub uses_feed: bool,
     /// G53: the move is in machine coordinates.
     pub machine_coordinates: bool,
-    /// G28 or G30.
-    pub reference: bool,
+    /// The reference point that it goes to: 1 is that of G28, G74 and homing; further ones are
+    /// those of G30, from 2 on, and the fixed points of G75, the first of which is 2.
+    pub reference: Option<u16>,
     /// It homes the axes at a speed of the control's own, under the limits in force.
     pub homes: bool,
     /// The block carries a checksum.
@@ -87,4 +88,20 @@ pub struct Facts {
     pub transfers: bool,
     /// Millimetres in a program unit when the block's F is read, or would be.
     pub feed_mm_per_unit: f64,
+    /// The cycle that it calls by name (SINUMERIK).
+    pub called: Option<CalledCycle>,
+}
+
+/// A cycle that is called by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CalledCycle {
+    /// How many steps of the block come before those of the cycle.
+    pub own_steps: usize,
+    /// It drills or bores: it makes straight moves, and does not turn the spindle.
+    pub plain: bool,
+    /// It is a pattern of places at each of which the cycle runs.
+    pub pattern: bool,
+    /// The line of MCALL that has set it, with the number of its text; `None`: it stands in
+    /// the block itself.
+    pub set_at: Option<(u16, u64)>,
 }

@@ -176,7 +176,7 @@ impl Control<'_> {
             } else {
                 modal.absolute
             };
-            let unknown = self.position.unknown.contains(axis) && absolute;
+            let unknown = self.position.apart.contains(axis) && absolute;
             if named.contains(axis) || unknown {
                 return None;
             }

@@ -74,7 +74,7 @@ impl Control<'_> {
                            is not known: every axis counts at its full speed and acceleration";
             run.report.note_once("unknown-moves", message, whole);
         }
-        run.facts.reference = true;
+        run.facts.reference = Some(1);
         run.facts.boundary = true;
         run.facts.fixed = Some("it homes the axes");
         let all = self.machine.axis_set;

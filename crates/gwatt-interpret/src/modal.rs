@@ -2,7 +2,7 @@
 
 use super::code::Motion;
 use gwatt_machine::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
-use gwatt_machine::{Machine, PathMode};
+use gwatt_machine::{Lathe, Machine, PathMode};
 use gwatt_motion::{Corner, FeedMode};
 
 /// The feed in force: value, unit and text of the F word that set it.
@@ -80,6 +80,9 @@ pub struct Modal {
     pub mm_per_unit: f64,
     /// G93, G94 or G95.
     pub feed_mode: FeedMode,
+    /// The number of the G word that says so, times ten: on lathes also G98 and G99, on
+    /// SINUMERIK G96, G97 and their kin.
+    pub feed_mode_word: u16,
     /// The F in force, if any.
     pub feed: Option<Feed>,
     /// Whether the program may run through the end of a block.
@@ -119,6 +122,12 @@ impl Modal {
                 FeedMode::PerRevolution
             } else {
                 FeedMode::PerMinute
+            },
+            feed_mode_word: match (language.dialect.lathe, language.dialect.per_revolution) {
+                (Some(Lathe::A), true) => 990,
+                (Some(Lathe::A), false) => 980,
+                (_, true) => 950,
+                (_, false) => 940,
             },
             feed: None,
             path_mode: machine.path.mode.unwrap_or(language.power_on_mode),

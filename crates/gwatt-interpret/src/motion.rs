@@ -155,7 +155,7 @@ impl Control<'_> {
             } else {
                 end[axis] + value
             };
-            if self.position.unknown.contains(axis) && (absolute || machine_coordinates) {
+            if (absolute || machine_coordinates) && self.places(axis, machine_coordinates) {
                 unknown.insert(axis);
             }
             if end[axis].abs() > POSITION_MAX_MM {

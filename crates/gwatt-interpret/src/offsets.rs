@@ -242,6 +242,11 @@ impl Offsets {
         !self.is_further() && (self.known || self.given & 1 << self.system != 0)
     }
 
+    /// The same for one axis, whose offset the program may have set.
+    pub(super) fn is_known_of(&self, axis: usize) -> bool {
+        !self.is_further() && self.known_from(first_of(self.system), axis).is_some()
+    }
+
     /// Whether a further system is in force: G54.1, G154.
     pub(super) fn is_further(&self) -> bool {
         self.system > SYSTEMS

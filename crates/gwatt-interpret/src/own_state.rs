@@ -18,6 +18,14 @@ pub(super) enum OwnState {
 }
 
 impl OwnState {
+    /// SINUMERIK's.
+    pub(super) fn siemens(&self) -> Option<&Siemens> {
+        match self {
+            Self::Siemens(state) => Some(state),
+            _ => None,
+        }
+    }
+
     /// SINUMERIK's, lent out until it is put back.
     pub(super) fn take_siemens(&mut self) -> Option<Box<Siemens>> {
         match std::mem::take(self) {

@@ -7,6 +7,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::datum::{Datum, Datums};
 use super::flow::limits::Limits;
 use super::frame::Frame;
 use super::given::GivenVariable;
@@ -136,6 +137,11 @@ pub(super) struct Position {
     /// Axes whose last programmed coordinate is no longer the place where they
     /// stand, since a turn or a scale has begun or ended (Fanuc).
     pub(super) adrift: AxisSet,
+    /// What the places rest on.
+    pub(super) datums: Datums,
+    /// Axes whose places do not rest on what coordinates of the program rest on, as of the
+    /// last block that is not plain.
+    pub(super) apart: AxisSet,
 }
 
 impl Position {
@@ -151,6 +157,8 @@ impl Position {
             frame: offsets.frame(),
             offsets,
             adrift: AxisSet::default(),
+            datums: Datums::default(),
+            apart: AxisSet((1 << AXES) - 1),
         }
     }
 
@@ -199,6 +207,7 @@ impl Position {
         self.at[axis] = at_mm;
         self.change(|offsets| offsets.set_g92(axis, 0.0));
         self.unknown.0 &= !(1 << axis);
+        self.datums.place(axis, Datum::Machine);
     }
 
     /// The offsets of G92 in force.
@@ -213,6 +222,7 @@ impl Position {
 
     /// G92.1 (`forget`) and G92.2.
     pub(super) fn clear_offset(&mut self, forget: bool) {
+        self.datums.forget_set();
         self.change(|offsets| offsets.clear_g92(forget));
     }
 }

@@ -1,6 +1,7 @@
 //! G28, G30 and G92: reference points and offsets.
 
 use super::control::{Control, Run};
+use super::datum::Datum;
 use super::letters::bit;
 use super::offsets::REFERENCE;
 use super::places::POSITION_MAX_MM;
@@ -13,12 +14,10 @@ use gwatt_syntax::source::Span;
 impl Control<'_> {
     /// G28 and G30: to the intermediate point, then to the reference point.
     pub(super) fn reference(&mut self, number: u16, span: Span, run: &mut Run<'_, '_>) {
-        run.facts.reference = true;
-        if number == 300 {
-            // Its place is a setting of the control; P2 to P4 name further ones.
-            run.words.take(b'P');
-        }
-        let second = usize::from(number == 300);
+        let Some(point) = self.reference_number(number, span, run) else {
+            return;
+        };
+        run.facts.reference = Some(point);
         let mut named = AxisSet::default();
         run.words.axes().for_each(|(axis, _)| named.insert(axis));
         self.refuse_turned(named, span, run);
@@ -38,63 +37,94 @@ impl Control<'_> {
             };
             self.go(run, MoveKind::Rapid, &via, unknown, None);
         }
-        let point = self.reference_point(second, named, span, run);
+        let (place, unknown) = self.reference_point(point, named, span, run);
         let mut home = self.position.at;
         if named != self.machine.axis_set && !self.position.frame.is_plain() {
             // LinuxCNC: the named coordinates of the program become those of
             // the point, which in turned coordinates moves other axes too.
             let frame = &self.position.frame;
             let mut program = frame.program(&home);
-            let there = frame.program(&point);
+            let there = frame.program(&place);
             for axis in named.iter() {
                 program[axis] = there[axis];
             }
             home = frame.machine(&program);
         } else {
             for axis in named.iter() {
-                home[axis] = point[axis];
+                home[axis] = place[axis];
             }
         }
-        let unknown = AxisSet(named.0 & self.position.unknown.0);
         let rapid_factor = self.knobs.rapid_factor;
         // On LinuxCNC and grbl G28 is a rapid; only homing has speeds of its own.
         let is_rapid = self.rules.returns_are_rapids;
-        if second == 0 && !is_rapid {
+        if point == 1 && !is_rapid {
             self.knobs.rapid_factor *= self.return_factor(&home, named, unknown);
         }
         self.go(run, MoveKind::Rapid, &home, unknown, None);
         self.knobs.rapid_factor = rapid_factor;
     }
 
-    /// The point that G28 or G30 goes to, machine coordinates: `LinuxCNC` keeps it among
-    /// its parameters; without those, and for others, the first is in the machine file.
+    /// The number of the point that G28 or G30 goes to: P of G30, which is 2 without it.
+    fn reference_number(&self, number: u16, span: Span, run: &mut Run<'_, '_>) -> Option<u16> {
+        if number != 300 {
+            return Some(1);
+        }
+        let point = run.words.take(b'P').unwrap_or(2.0);
+        if (1.0..=4.0).contains(&point) && point.fract() == 0.0 {
+            return Some(point as u16);
+        }
+        run.report
+            .error("reference-axes", "G30 has reference points 2 to 4", span)
+            .help("write P2, P3 or P4, or none for the second");
+        None
+    }
+
+    /// The point that G28 or G30 goes to, machine coordinates, and the axes of which it is not
+    /// known how far it is: `LinuxCNC` keeps the first two among its parameters; without
+    /// those, and for others, they are in the machine file.
     fn reference_point(
-        &self,
-        second: usize,
+        &mut self,
+        point: u16,
         named: AxisSet,
         span: Span,
         run: &mut Run<'_, '_>,
-    ) -> AxisValues {
-        let mut point = [0.0; AXES];
+    ) -> (AxisValues, AxisSet) {
+        let mut place = [0.0; AXES];
+        let mut apart = AxisSet::default();
         for axis in named.iter() {
-            match self.known_reference(second, axis) {
-                Some(place_mm) => point[axis] = place_mm,
-                None => note_machine_zero(span, run),
+            let datum = match self.known_reference(point, axis) {
+                Some(place_mm) => {
+                    place[axis] = place_mm;
+                    self.machine_datum(axis)
+                }
+                None => {
+                    note_machine_zero(span, run);
+                    Datum::Reference(point)
+                }
+            };
+            if self.position.is_apart(axis, datum) {
+                apart.insert(axis);
             }
+            self.position.datums.place(axis, datum);
         }
-        point
+        (place, apart)
     }
 
     /// The place of one axis at that point, where it is known. What grbl's homing leads to is
     /// not its G28.
-    pub(super) fn known_reference(&self, second: usize, axis: usize) -> Option<f64> {
-        let first = *REFERENCE.get(second)?;
+    pub(super) fn known_reference(&self, point: u16, axis: usize) -> Option<f64> {
         let stored = self.rules.places_in_parameters;
-        let known = stored.then(|| self.position.offsets().known_from(first, axis));
-        let homes = stored && self.machine.controller.language.loose_o_words;
-        let data = self.machine.axes[axis].as_ref();
-        let given = data.and_then(|data| data.reference_mm);
-        known.flatten().or(given.filter(|_| second == 0 && !homes))
+        let data = self.machine.axes[axis].as_ref()?;
+        if stored {
+            let first = *REFERENCE.get(usize::from(point - 1))?;
+            let known = self.position.offsets().known_from(first, axis);
+            let homes = self.machine.controller.language.loose_o_words;
+            return known.or(data.reference_mm.filter(|_| point == 1 && !homes));
+        }
+        match point {
+            1 => data.reference_mm,
+            _ => data.further_reference_mm[usize::from(point - 2)],
+        }
     }
 
     /// The share of the rapid speed at which the axes return to the reference point: no
@@ -219,7 +249,7 @@ impl Control<'_> {
                     .help("check the number");
                 continue;
             }
-            self.position.set_offset(axis, value);
+            self.set_coordinate(axis, value);
         }
     }
 }

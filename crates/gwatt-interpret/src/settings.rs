@@ -21,6 +21,7 @@ impl Control<'_> {
                     self.modal.feed = None;
                 }
                 self.modal.feed_mode = mode;
+                self.modal.feed_mode_word = number;
             }
         }
     }

@@ -108,7 +108,7 @@ impl Control<'_> {
                 )
                 .help("check the number");
         }
-        unknown.0 &= self.position.unknown.0;
+        let unknown = self.place_all(named, unknown, machine_coordinates);
         (run.report.diagnostics.errors == errors).then_some(unknown)
     }
 

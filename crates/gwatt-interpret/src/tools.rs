@@ -43,8 +43,8 @@ pub(super) struct Tools {
     /// Whether the program, or who runs it, has said which these are.
     selected_told: bool,
     loaded_told: bool,
-    /// A length in force was taken as 0, since nothing is known of the tool.
-    pub(super) length_guessed: bool,
+    /// The tool or offset whose length in force was taken as 0, since nothing is known of it.
+    pub(super) guessed: Option<u32>,
     /// The number of G43 in force (Fanuc: H alone changes it).
     length: Option<(ToolLength, u32)>,
 }

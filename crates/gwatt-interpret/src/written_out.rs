@@ -2,6 +2,7 @@
 
 use super::code::Motion;
 use super::execute::Interpreter;
+use super::siemens::Siemens;
 use gwatt_machine::{AxisId, AxisSet, AxisValues};
 
 impl Interpreter<'_> {
@@ -40,21 +41,25 @@ impl Interpreter<'_> {
     #[must_use]
     pub fn place_in_program(&self, place: &AxisValues) -> AxisValues {
         let control = &self.control;
-        let mut place = control.position.frame.program(place);
+        let mut place = match control.own.siemens() {
+            Some(state) => state.program_place(place),
+            None => control.position.frame.program(place),
+        };
         for (axis, value) in place.iter_mut().enumerate() {
             *value = control.in_unit(axis, *value);
         }
-        if control.modal.diameter {
+        let own = control.own.siemens();
+        if control.modal.diameter || own.is_some_and(Siemens::in_diameters) {
             place[AxisId::X as usize] *= 2.0;
         }
         place
     }
 
-    /// Whether it is known where G28 leads these axes, or, `second`, G30.
+    /// Whether it is known where a return to a reference point leads these axes; `point` as in
+    /// [`Facts::reference`](crate::Facts::reference).
     #[must_use]
-    pub fn knows_reference(&self, second: bool, moving: AxisSet) -> bool {
-        let second = usize::from(second);
-        let known = |axis| self.control.known_reference(second, axis).is_some();
+    pub fn knows_reference(&self, point: u16, moving: AxisSet) -> bool {
+        let known = |axis| self.control.known_reference(point, axis).is_some();
         moving.iter().all(known)
     }
 
@@ -66,7 +71,7 @@ impl Interpreter<'_> {
         let language = &control.machine.controller.language;
         let lathe = language.dialect.lathe.is_some();
         let offsets_unknown = if control.rules.t_selects_offset {
-            control.tools.length_guessed
+            control.tools.guessed.is_some()
         } else {
             control.tools.selected != 0
         };
@@ -80,7 +85,7 @@ impl Interpreter<'_> {
             let off = control.tools.selected == 0 || control.choice.number == Some(0);
             return (!off).then_some("the length of the tool is in force: write D0 before it");
         }
-        if control.tools.length_guessed && moving.contains(AxisId::Z as usize) {
+        if control.tools.guessed.is_some() && moving.contains(AxisId::Z as usize) {
             return Some("the length of the tool is not known: give it with --tool-table");
         }
         if control.position.offsets().is_further() {

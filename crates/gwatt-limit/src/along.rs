@@ -80,6 +80,16 @@ impl Solver<'_> {
         own_mm_s.min(mv.feed_mm_s) * self.largest.feed
     }
 
+    /// The slowest speed at which a rapid from an unknown place may run along its path: that
+    /// of its slowest axis, at the largest override of a feed, mm/s.
+    pub(super) fn slowest_axis(&self, mv: &Move) -> f64 {
+        let axes = AxisSet(mv.moving.0 | mv.unknown_start.0);
+        let speeds = axes
+            .iter()
+            .filter_map(|axis| Some(self.machine.axes[axis].as_ref()?.rapid_mm_s));
+        speeds.fold(f64::INFINITY, f64::min) * mv.rapid_factor * self.largest.feed
+    }
+
     /// The acceleration along the path of a move that a knob governs, mm/s²; `None` where
     /// it governs that of the axes.
     pub(super) fn along_path(&self, knob: usize, mv: &Move) -> Option<f64> {

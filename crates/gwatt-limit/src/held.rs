@@ -83,6 +83,9 @@ impl Solver<'_> {
             blended_speed(self.machine, &changed, self.largest)
         } else if capped {
             self.fastest_axis(&changed)
+        } else if lever == SpeedLever::AsFeed {
+            let given_mm_s = changed.feed_mm_s * self.largest.feed;
+            self.slowest_axis(mv).min(given_mm_s)
         } else {
             changed.feed_mm_s.min(1e6) * self.largest.feed
         };

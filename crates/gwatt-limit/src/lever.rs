@@ -3,7 +3,7 @@
 use super::change::Permit;
 use super::level_groups::{Groups, groups};
 use super::options::LimitOptions;
-use gwatt_machine::{Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath};
+use gwatt_machine::{AxisSet, Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath};
 use gwatt_motion::{Move, MoveKind, own_path_speed};
 
 /// What shares may differ by from rounding.
@@ -233,16 +233,17 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
 
 /// Whether G1 runs the same path as this G0, or one that is permitted, no faster.
 fn rapid_as_feed(machine: &Machine, how: LimitOptions, mv: &Move, permit: &Permit) -> bool {
+    let commanded = AxisSet(mv.moving.0 | mv.unknown_start.0);
+    let clear =
+        || mv.unknown_start.is_empty() && machine.path.is_clear(mv.moving, &mv.start, &mv.end);
     let straight = machine.path.rapid == RapidPath::Linear
-        || mv.moving.iter().count() == 1
-        || how.allowed.straighten && machine.path.is_clear(mv.moving, &mv.start, &mv.end);
+        || commanded.iter().count() == 1
+        || how.allowed.straighten && clear();
     machine.controller.rapid_knob == RapidKnob::G1
         && straight
         && permit.as_feed
         && permit.feed_word
-        && mv.unknown_start.is_empty()
-        && mv
-            .moving
+        && commanded
             .iter()
             .all(|axis| permit.feed_accel_mm_s2[axis] <= mv.accel_mm_s2[axis])
 }

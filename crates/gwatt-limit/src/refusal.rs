@@ -5,7 +5,7 @@ use super::change::Change;
 use super::lever::{FEED_NOT_ALLOWED, NO_KNOB, Obstacle, SpeedLever, UNTOUCHABLE, speed_knob};
 use super::options::{Allowed, LimitOptions};
 use super::solver::Solver;
-use gwatt_machine::{RapidKnob, RapidPath};
+use gwatt_machine::{AxisSet, RapidKnob, RapidPath};
 use gwatt_motion::{CYCLE, MoveKind, TURNING_CYCLE};
 
 /// What can always be done about a block that may not be changed.
@@ -49,16 +49,17 @@ impl Solver<'_> {
                 help,
             );
         }
-        if !mv.unknown_start.is_empty() {
+        let each_for_itself = self.machine.path.rapid == RapidPath::Independent
+            && self.machine.controller.rapid_knob == RapidKnob::G1
+            && AxisSet(mv.moving.0 | mv.unknown_start.0).iter().count() > 1;
+        if each_for_itself && !mv.unknown_start.is_empty() {
             return Obstacle::new(
                 NO_KNOB,
                 "the rapid may not be written as a feed: where it starts is not known",
-                "give --start X…,Y…,Z…, or write the move as a feed by hand",
+                "give --start X…,Y…,Z…, or what its place rests on ([offsets], reference_mm, \
+                 --tool-table); or write the move as a feed by hand",
             );
         }
-        let each_for_itself = self.machine.path.rapid == RapidPath::Independent
-            && self.machine.controller.rapid_knob == RapidKnob::G1
-            && mv.moving.iter().count() > 1;
         if permit.reason.is_empty() && each_for_itself {
             return Obstacle::new(
                 NO_KNOB,

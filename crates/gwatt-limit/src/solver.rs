@@ -161,6 +161,8 @@ impl<'m> Solver<'m> {
             // What its neighbours may carry it up to, however short it is.
             _ if self.is_open(case, &base) => blended_speed(self.machine, &base, self.largest),
             SpeedLever::Cap(_) if !mv.unknown_start.is_empty() => self.fastest_axis(&base),
+            // No faster than the rapid, in whichever direction it runs.
+            SpeedLever::AsFeed if !mv.unknown_start.is_empty() => self.slowest_axis(mv),
             _ if mv.unknown_start.is_empty() => {
                 plan(self.machine, &base, self.largest).top_speed_mm_s
             }

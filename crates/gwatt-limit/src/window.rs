@@ -171,12 +171,39 @@ fn window_load(
         .fold(0.0, f64::max)
 }
 
+/// How often speeds are lowered again: where F does not speak for all axes of a move from an
+/// unknown place, the others keep theirs.
+const ROUNDS: u32 = 8;
+/// What each further round aims below the limit.
+const AIM_BELOW: f64 = 1e-3;
+
 /// Lowers the axis speeds of the window to a common cap.
 fn lower_speed(
     solver: &Solver<'_>,
     slots: &mut VecDeque<Slot>,
     window: &Window<'_>,
     found: &[Levers],
+) -> bool {
+    for round in 0..ROUNDS {
+        let aim = 1.0 - AIM_BELOW * f64::from(round);
+        if !scale_speeds(solver, slots, window, found, aim) {
+            return false;
+        }
+        if load(solver, slots, window) <= 1.0 + 1e-9 {
+            return true;
+        }
+    }
+    false
+}
+
+/// Lowers them as if all of them went down with the words, to `aim` times the limit; whether
+/// words say that.
+fn scale_speeds(
+    solver: &Solver<'_>,
+    slots: &mut VecDeque<Slot>,
+    window: &Window<'_>,
+    found: &[Levers],
+    aim: f64,
 ) -> bool {
     let bounds: Vec<SpeedBound> = window
         .iter()
@@ -206,7 +233,7 @@ fn lower_speed(
             .iter()
             .zip(factors(cap))
             .map(|(bound, factor)| (scale(bound, factor), &accel));
-        window_load(solver, slots, window, &envelope(scaled).0, &accel)
+        window_load(solver, slots, window, &envelope(scaled).0, &accel) / aim
     };
     let Some(cap) = largest(1.0, load_at(1.0), load_at) else {
         return false;
@@ -219,7 +246,7 @@ fn lower_speed(
             return false;
         }
     }
-    load(solver, slots, window) <= 1.0 + 1e-9
+    true
 }
 
 /// Lowers the speed of one move to a share of what it has now.

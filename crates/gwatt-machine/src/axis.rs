@@ -103,6 +103,9 @@ pub enum AxisKind {
     Rotary,
 }
 
+/// How many reference points an axis has after the first.
+pub const FURTHER_REFERENCES: usize = 4;
+
 /// One axis, load side, in the program's units of motion (mm or degrees) and
 /// SI for mass and force. For rotary axes read: degrees for mm, kg·m² for kg,
 /// N·m for N.
@@ -119,6 +122,9 @@ pub struct Axis {
     pub reference_mm_s: f64,
     /// Machine coordinate of the reference point; `None` where it is not given.
     pub reference_mm: Option<f64>,
+    /// The same of further points: those of G30 from the second on, or the fixed points of
+    /// SINUMERIK's G75 from the first on.
+    pub further_reference_mm: [Option<f64>; FURTHER_REFERENCES],
     /// Acceleration limit in mm/s² or degrees/s².
     pub accel_mm_s2: f64,
     /// Jerk limit in mm/s³ or degrees/s³; 0: none.

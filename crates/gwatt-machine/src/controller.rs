@@ -93,6 +93,11 @@ pub struct Language {
     /// How far G73 draws back, and how far above the last depth the rapid of
     /// G83 ends, mm; not of `Rs274`, which has it fixed.
     pub peck_clearance_mm: f64,
+    /// How far the tool goes off after a pass of G71 and G72, and back after a peck of G74 and
+    /// G75, where a lathe's program gives no R, mm; `None`: not known.
+    pub escape_mm: Option<f64>,
+    /// See `escape_mm`.
+    pub groove_return_mm: Option<f64>,
     /// How far the radii of an arc at its start and end may always differ, mm: in a
     /// program in mm, and in one in inches; `None`: not known, the least of all.
     pub arc_tolerance_mm: Option<[f64; 2]>,

@@ -30,8 +30,6 @@ pub struct FamilyFacts {
     pub comment_to_line_end: bool,
     /// G1 goes to machine coordinates under G53.
     pub feeds_in_machine_coordinates: bool,
-    /// G93 to G95 change the mode of the feed and nothing else, such as constant surface speed.
-    pub feed_mode_is_apart: bool,
     /// Canned cycles can be written out as single blocks.
     pub writes_out_cycles: bool,
     /// The way to a reference point is written in machine coordinates.
@@ -96,7 +94,6 @@ pub enum LevelWords {
 const ISO: FamilyFacts = FamilyFacts {
     comment_to_line_end: false,
     feeds_in_machine_coordinates: false,
-    feed_mode_is_apart: true,
     writes_out_cycles: true,
     returns_in_machine_coordinates: false,
     reference_in_parameters: false,
@@ -135,7 +132,6 @@ const RS274: FamilyFacts = FamilyFacts {
 
 /// What families without any of this have.
 const PLAIN: FamilyFacts = FamilyFacts {
-    feed_mode_is_apart: false,
     writes_out_cycles: false,
     motion_survives_cycles: false,
     level_by_g99: false,

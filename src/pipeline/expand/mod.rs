@@ -6,6 +6,7 @@
 //! that ends it, and for each of its lines the one that it comes from. It is read again and
 //! compared with the original step by step, so it makes the same moves or is not passed on.
 
+mod called;
 mod compare;
 mod returns;
 mod trace;
@@ -277,22 +278,30 @@ fn survey_path(
     let mut open: Option<Series> = None;
     // What comes next taps without a chuck that gives way.
     let mut rigid = false;
+    let mut texts: Option<Vec<&[u8]>> = None;
     let mut before = returns::Before::of(front.interpreter().modal());
     while let Some(line) = front.next_line()? {
         let (facts, interpreter) = (&*line.facts, line.interpreter);
-        if !facts.cycle {
+        if let Some(cycle) = facts.called {
+            let texts = texts.get_or_insert_with(|| lines(program).collect());
+            close(
+                &mut Some(called::series(&line, cycle, texts, &singles)),
+                all,
+            );
+        } else if !facts.cycle {
             if !interpreter.in_cycle() {
                 rigid &= open.is_none();
                 close(&mut open, all);
             }
             rigid |= line.block.words.iter().any(is_rigid);
-            if facts.reference || facts.machine_coordinates {
+            if facts.reference.is_some() || facts.machine_coordinates {
                 close(&mut returns::series(&line, &before, machine), all);
             }
-            before = returns::Before::of(interpreter.modal());
-            continue;
         }
         before = returns::Before::of(interpreter.modal());
+        if !facts.cycle {
+            continue;
+        }
         let number = line.key.1;
         let fixed = stays(&line);
         if lathe && let Some(word) = turning::word(line.block) {

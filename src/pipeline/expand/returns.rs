@@ -7,7 +7,6 @@ use super::{Lines, Series};
 use crate::interpret::{Modal, Motion, Step};
 use crate::machine::{AxisKind, AxisSet, Lathe, Machine};
 use crate::pipeline::executor::Line;
-use crate::pipeline::untouched::goes_elsewhere;
 use crate::rewrite::Return;
 
 /// What is said where such a block stays as it is.
@@ -42,15 +41,17 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before, machine: &Machine) ->
     }
     let (text, number) = line.key;
     let facts = &*line.facts;
-    let second = goes_elsewhere(line.block);
+    let unknown_point = facts
+        .reference
+        .filter(|point| !line.interpreter.knows_reference(*point, moving));
     let written = if text != 0 {
         Err("it stands in the file of a subprogram")
     } else if line.block.delete_level > 0 || facts.checksum {
         Err("its block may be skipped")
     } else if facts.compensated {
         Err("it runs under cutter compensation")
-    } else if facts.reference && !line.interpreter.knows_reference(second, moving) {
-        Err(not_known(second, machine))
+    } else if let Some(point) = unknown_point {
+        Err(not_known(point, machine))
     } else if let Some(why) = line.interpreter.unsure_of_places(moving) {
         Err(why)
     } else {
@@ -85,14 +86,14 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before, machine: &Machine) ->
 }
 
 /// Why a return cannot be gone by feeds before it where nobody has said where it leads.
-fn not_known(second: bool, machine: &Machine) -> &'static str {
+fn not_known(point: u16, machine: &Machine) -> &'static str {
     let stored = machine
         .controller
         .language
         .family
         .facts()
         .reference_in_parameters;
-    match (second, stored) {
+    match (point > 1, stored) {
         (false, false) => {
             "where it leads is not known: give reference_mm of the axes in the machine file"
         }
@@ -102,7 +103,8 @@ fn not_known(second: bool, machine: &Machine) -> &'static str {
         }
         (true, true) => "where it leads is not known: give the control's --parameters",
         (true, false) => {
-            "where it leads only the control knows: the machine file has no field for this point"
+            "where it leads is not known: give further_reference_mm of the axes in the machine \
+             file"
         }
     }
 }

@@ -79,7 +79,7 @@ impl Rewriter<'_> {
         }
         if view.after.feed.is_none() && view.change.feed.is_none() {
             // G93, G94 and G95 forget the feed of another meaning.
-            self.written.feed = if view.after.per_minute {
+            self.written.feed = if view.after.per_minute() {
                 self.written.feed
             } else {
                 None

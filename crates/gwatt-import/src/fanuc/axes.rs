@@ -128,10 +128,13 @@ fn axis(
     };
     let accel = reader.accel(log, &rapid, feed);
     let reference = reader.position(1240, log);
+    let further = (1241..=1243).map_while(|number| reader.position(number, log));
+    let further_references = further.collect();
     let [max, min] = [1320, 1321].map(|number| reader.position(number, log));
     let axis = found.axis(id);
     axis.rotary = reader.rotary;
     (axis.rapid, axis.accel, axis.reference) = (Some(rapid), accel, reference);
+    axis.further_references = further_references;
     if let (Some(min), Some(max)) = (min, max) {
         axis.travel(&min, &max, "");
     }

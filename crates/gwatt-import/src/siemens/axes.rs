@@ -150,6 +150,9 @@ impl<'t> Axis<'_, 't> {
     }
 }
 
+/// Fixed points of an axis (MD30600).
+const FIXED_POINTS: usize = 4;
+
 fn spindle(axis: &Axis<'_, '_>, found: &mut Found, log: &mut Log) {
     let limit = axis.figure("SPIND_VELO_LIMIT", log, 1.0);
     let limit = limit.or_else(|| axis.figure("MAX_AX_VELO", log, 1.0));
@@ -185,6 +188,12 @@ fn one(axis: &Axis<'_, '_>, found: &mut Found, log: &mut Log, id: AxisId) -> Opt
     let speeds = speeds.map(|name| axis.figure(name, log, length));
     let reference_speed = highest(speeds.into_iter().flatten()).filter(|it| it.value > 0.0);
     let reference = axis.figure("REFP_SET_POS", log, 1.0);
+    // Those that follow each other from the first on.
+    let fixed = axis.figures("FIX_POINT_POS", log, 1.0);
+    let fixed = (0..FIXED_POINTS)
+        .map_while(|number| fixed.iter().find(|(at, _)| *at == number))
+        .map(|(_, figure)| figure.clone());
+    let further_references: Vec<Figure> = fixed.collect();
     let jerk = axis.figures("MAX_AX_JERK", log, unit);
     let [min, max] = ["POS_LIMIT_MINUS", "POS_LIMIT_PLUS"].map(|name| axis.figure(name, log, 1.0));
     let drive = [
@@ -201,6 +210,7 @@ fn one(axis: &Axis<'_, '_>, found: &mut Found, log: &mut Log, id: AxisId) -> Opt
     to.rotary = axis.rotary;
     (to.rapid, to.accel) = (rapid, accel);
     (to.reference_speed, to.reference) = (reference_speed, reference);
+    to.further_references = further_references;
     if let (Some(min), Some(max)) = (min, max) {
         to.travel(&min, &max, "");
     }

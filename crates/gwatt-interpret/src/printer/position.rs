@@ -34,7 +34,7 @@ impl Control<'_> {
     ///
     /// Source: Marlin G28 (no axis: all of X Y Z), Klipper G28, `RepRapFirmware` G28.
     pub(super) fn home(&mut self, run: &mut Run<'_, '_>, parameters: &Parameters, span: Span) {
-        run.facts.reference = true;
+        run.facts.reference = Some(1);
         run.facts.homes = true;
         let mut named = AxisSet::default();
         for parameter in parameters {

@@ -2,9 +2,11 @@
 //! motion, then a cycle or a modal call, then stops and ends.
 
 use super::code::Code;
+use super::cycle::Call;
 use super::{Called, Siemens};
 use crate::code::{GCode, Motion};
 use crate::control::{Control, Run};
+use crate::facts::CalledCycle;
 use crate::jump::{Siemens as Go, Transfer};
 use crate::macro_block::not_finite;
 use crate::own_state::OwnState;
@@ -148,6 +150,7 @@ impl Control<'_> {
             .get(before..)
             .is_some_and(|steps| steps.iter().any(moves));
         if let Some(call) = cycle {
+            run.facts.called = called(state, &call, run);
             self.cycle(state, &call, run);
         } else if moved && run.report.diagnostics.errors == errors {
             self.modal_call(state, run);
@@ -221,7 +224,7 @@ impl Control<'_> {
     /// G96 and G97 with their kin ("Constant cutting rate"): they choose how F
     /// is meant too.
     fn spindle_modes(&mut self, state: &mut Siemens, run: &mut Run<'_, '_>) {
-        for (code, ..) in &run.words.g {
+        for (code, number, _) in &run.words.g {
             let per_revolution = match code {
                 GCode::Siemens(Code::SurfaceSpeed { per_revolution }) => {
                     state.surface_speed = true;
@@ -246,6 +249,7 @@ impl Control<'_> {
                 self.modal.feed = None;
             }
             self.modal.feed_mode = mode;
+            self.modal.feed_mode_word = *number;
         }
     }
 
@@ -366,7 +370,15 @@ impl Control<'_> {
         }
         run.facts.fixed = Some("it calls a cycle or a subprogram (MCALL)");
         match modal.what.clone() {
-            Called::Cycle(call) => self.cycle(state, &call, run),
+            Called::Cycle(call) => {
+                run.facts.called = Some(CalledCycle {
+                    own_steps: run.steps.len(),
+                    plain: call.is_plain(),
+                    pattern: false,
+                    set_at: Some(modal.set_at),
+                });
+                self.cycle(state, &call, run);
+            }
             Called::Program { name, arguments } => {
                 state.pending = arguments;
                 self.transfer = Some(Transfer::Siemens(Go::Call {
@@ -392,5 +404,32 @@ impl Control<'_> {
     /// Whether lengths are in inches.
     pub(super) fn in_inches(&self) -> bool {
         self.modal.mm_per_unit == MM_PER_INCH
+    }
+}
+
+/// What is known of a cycle that a block calls itself: a pattern runs the one that MCALL has
+/// set.
+fn called(state: &Siemens, call: &Call, run: &Run<'_, '_>) -> Option<CalledCycle> {
+    let own_steps = run.steps.len();
+    if !call.is_pattern() {
+        return Some(CalledCycle {
+            own_steps,
+            plain: call.is_plain(),
+            pattern: false,
+            set_at: None,
+        });
+    }
+    let modal = state.modal_call.as_ref();
+    match &modal
+        .filter(|modal| modal.depth == state.scopes.len())?
+        .what
+    {
+        Called::Cycle(cycle) => Some(CalledCycle {
+            own_steps,
+            plain: cycle.is_plain(),
+            pattern: true,
+            set_at: modal.map(|modal| modal.set_at),
+        }),
+        Called::Program { .. } => None,
     }
 }

@@ -62,6 +62,11 @@ impl Call {
         matches!(self.kind, Kind::Row | Kind::Circle)
     }
 
+    /// Whether it makes straight moves and does not turn the spindle.
+    pub(super) fn is_plain(&self) -> bool {
+        matches!(self.kind, Kind::Drill | Kind::Deep | Kind::Bore)
+    }
+
     /// The argument at a place from 1; `None` where it is left out.
     pub(super) fn value(&self, place: usize) -> Option<f64> {
         self.values.get(place.checked_sub(1)?).copied().flatten()

@@ -64,7 +64,12 @@ impl Reading<'_, '_, '_> {
                     self.cursor.at += name.len();
                     let what = self.called(&name, start)?;
                     let depth = self.state.scopes.len();
-                    self.state.modal_call = Some(ModalCall { what, depth });
+                    let set_at = (self.control.text, self.control.parameters.line);
+                    self.state.modal_call = Some(ModalCall {
+                        what,
+                        depth,
+                        set_at,
+                    });
                 }
                 Go::Next
             }

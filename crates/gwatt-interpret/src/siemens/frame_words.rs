@@ -114,7 +114,7 @@ impl Reading<'_, '_, '_> {
 
 impl Siemens {
     /// Program coordinates of a place.
-    pub(super) fn program_place(&self, at: &AxisValues) -> AxisValues {
+    pub(crate) fn program_place(&self, at: &AxisValues) -> AxisValues {
         let straight: AxisValues = std::array::from_fn(|axis| at[axis] - self.turns[axis]);
         self.frame.program(&straight)
     }

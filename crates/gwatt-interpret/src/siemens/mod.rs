@@ -78,6 +78,8 @@ struct Extra {
     polar_radius: Option<(Measure, f64)>,
     /// SUPA, G53, G153.
     machine_coordinates: bool,
+    /// FP of G75.
+    fixed_point: Option<f64>,
     /// CYCLE832: a path mode that blends.
     blends: bool,
     /// DYNNORM and similar words: a group of levels, and which one of it; `None`: any of them.
@@ -96,6 +98,8 @@ struct ModalCall {
     /// Programs inside one another when it was set: only blocks of that one
     /// call it.
     depth: usize,
+    /// The line that has set it, with the number of its text.
+    set_at: (u16, u64),
 }
 
 #[derive(Debug, Clone)]
@@ -284,6 +288,7 @@ impl Siemens {
             modal.feed_mode = saved.modal.feed_mode;
             modal.feed = None;
         }
+        modal.feed_mode_word = saved.modal.feed_mode_word;
         self.frame = saved.frame;
         knobs.select_all(machine, saved.levels);
         true
@@ -292,6 +297,11 @@ impl Siemens {
     /// Whether the program is a subprogram with parameters, which nobody has called.
     pub(super) fn is_uncalled(&self) -> bool {
         self.uncalled
+    }
+
+    /// Whether words of X are diameters (DIAMON).
+    pub(super) fn in_diameters(&self) -> bool {
+        self.diameter
     }
 
     /// Whether the program that runs was called by another.

@@ -37,6 +37,11 @@ impl Reading<'_, '_, '_> {
                 let value = self.value_behind(name, start)?;
                 self.extra().opening_deg = Some(value);
             }
+            // "Fixed point approach (G75)".
+            "FP" => {
+                let value = self.value_behind(name, start)?;
+                self.extra().fixed_point = Some(value);
+            }
             "TURN" => {
                 let value = self.value_behind(name, start)?;
                 self.push_as(b'P', value + 1.0, start, block);

@@ -5,10 +5,12 @@ use super::code::Code;
 use super::{Measure, Siemens};
 use crate::code::{GCode, Motion};
 use crate::control::{Control, Run};
+use crate::datum::Datum;
 use crate::letters::AXIS_LETTERS;
 use crate::places::POSITION_MAX_MM;
 use gwatt_machine::{ALL_AXES, AXES, AxisKind, AxisSet, AxisValues};
 use gwatt_motion::{Arc, MoveKind, Step};
+use gwatt_syntax::source::Span;
 
 /// The end of a move.
 #[derive(Debug, Clone)]
@@ -18,8 +20,10 @@ pub(super) struct Target {
     pub(super) machine: AxisValues,
     /// Axes that the block names.
     pub(super) named: AxisSet,
-    /// Axes that are named but whose start is not known.
+    /// Axes that are named but of which it is not known how far they go.
     pub(super) unknown: AxisSet,
+    /// What the places rest on to which it leads.
+    datums: [Option<Datum>; AXES],
     /// Full turns that DC, ACP and ACN add.
     turns: AxisValues,
 }
@@ -122,6 +126,11 @@ impl Control<'_> {
         arc: Option<Arc>,
     ) {
         let before = run.steps.len();
+        for (axis, datum) in target.datums.iter().enumerate() {
+            if let Some(datum) = datum {
+                self.position.datums.place(axis, *datum);
+            }
+        }
         self.go(run, kind, &target.machine, target.unknown, arc);
         state.arrive(target, before, run);
     }
@@ -140,6 +149,7 @@ impl Control<'_> {
             machine: self.position.at,
             named: AxisSet::default(),
             unknown: AxisSet::default(),
+            datums: [None; AXES],
             turns: [0.0; AXES],
         };
         let words: arrayvec::ArrayVec<(usize, f64), AXES> = run.words.axes().collect();
@@ -190,7 +200,13 @@ impl Control<'_> {
                 _ => {
                     target.program[axis] = value;
                     target.machine[axis] = value;
-                    if unknown {
+                    let datum = if suppressed {
+                        self.machine_datum(axis)
+                    } else {
+                        self.program_datum(axis)
+                    };
+                    target.datums[axis] = Some(datum);
+                    if self.position.is_apart(axis, datum) {
                         target.unknown.insert(axis);
                     }
                 }
@@ -246,12 +262,15 @@ impl Control<'_> {
             machine: self.position.at,
             named: AxisSet::default(),
             unknown: AxisSet::default(),
+            datums: [None; AXES],
             turns: [0.0; AXES],
         };
         for &(axis, value) in places {
             target.program[axis] = value;
             target.named.insert(axis);
-            if self.position.unknown.contains(axis) {
+            let datum = self.program_datum(axis);
+            target.datums[axis] = Some(datum);
+            if self.position.is_apart(axis, datum) {
                 target.unknown.insert(axis);
             }
         }
@@ -268,8 +287,11 @@ impl Control<'_> {
     /// points are data of the machine. Those of G74 may be in the machine file, all
     /// others are taken as its zero.
     fn siemens_reference(&mut self, number: u16, state: &mut Siemens, run: &mut Run<'_, '_>) {
-        run.facts.reference = true;
         let span = run.whole();
+        let Some(point) = fixed_point(number, state, span, run) else {
+            return;
+        };
+        run.facts.reference = Some(point);
         let mut named = AxisSet::default();
         run.words.axes().for_each(|(axis, _)| named.insert(axis));
         run.words.unused &= !AXIS_LETTERS;
@@ -282,8 +304,7 @@ impl Control<'_> {
         }
         let mut target = self.target_at(state, &[]);
         for axis in named.iter() {
-            let data = self.machine.axes[axis].as_ref();
-            if data.is_none() {
+            if self.machine.axes[axis].is_none() {
                 let message = format!(
                     "the machine has no {} axis",
                     ALL_AXES[axis].letter() as char
@@ -293,18 +314,24 @@ impl Control<'_> {
                     .help("choose a machine with it, or describe it in the machine file");
                 return;
             }
-            let known = data.and_then(|data| data.reference_mm);
-            let point_mm = known.filter(|_| number == 740);
-            if point_mm.is_none() {
+            let place_mm = self.known_reference(point, axis);
+            if place_mm.is_none() {
                 let message =
                     "the reference and fixed points of G74 and G75 are taken as machine zero";
                 run.report.note_once("reference-point", message, span);
             }
-            target.machine[axis] = point_mm.unwrap_or(0.0);
+            let datum = match place_mm {
+                Some(_) => Datum::Machine,
+                None => Datum::Reference(point),
+            };
+            target.datums[axis] = Some(datum);
+            if self.position.is_apart(axis, datum) {
+                target.unknown.insert(axis);
+            }
+            target.machine[axis] = place_mm.unwrap_or(0.0);
             state.turns[axis] = 0.0;
         }
         target.named = named;
-        target.unknown = AxisSet(named.0 & self.position.unknown.0);
         let knobs = self.knobs.clone();
         if number == 740 {
             self.unlimited_return();
@@ -314,6 +341,22 @@ impl Control<'_> {
         self.knobs = knobs;
         self.settle();
     }
+}
+
+/// The number of the point that G74, or G75 with FP, goes to; the first fixed point is the
+/// second of all.
+fn fixed_point(number: u16, state: &Siemens, span: Span, run: &mut Run<'_, '_>) -> Option<u16> {
+    if number == 740 {
+        return Some(1);
+    }
+    let point = state.extra.fixed_point.unwrap_or(1.0);
+    if (1.0..=4.0).contains(&point) && point.fract() == 0.0 {
+        return Some(point as u16 + 1);
+    }
+    run.report
+        .error("reference-axes", "G75 has fixed points 1 to 4", span)
+        .help("write FP=1 to FP=4, or none for the first");
+    None
 }
 
 /// How far a rotary axis turns from `from` to `to`.

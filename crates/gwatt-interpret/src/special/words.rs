@@ -159,7 +159,13 @@ impl Control<'_> {
 
     /// A part of a special motion that moves to `end`.
     pub(crate) fn part(&mut self, run: &mut Run<'_, '_>, kind: MoveKind, end: &AxisValues) {
-        self.go(run, kind, end, AxisSet::default(), None);
+        let mut apart = AxisSet::default();
+        for axis in self.machine.axis_set.iter() {
+            if end[axis] != self.position.at[axis] && self.places(axis, false) {
+                apart.insert(axis);
+            }
+        }
+        self.go(run, kind, end, apart, None);
     }
 
     /// Where the control believes the axes to be.

@@ -39,7 +39,7 @@ impl Control<'_> {
         } else {
             self.tools.find(number).filter(|_| !self.tools.unknown())
         };
-        self.tools.length_guessed = known.is_none();
+        self.tools.guessed = known.is_none().then_some(self.tools.selected);
         if known.is_none() && !self.tools.unknown() {
             let span = run.words.span(b'T', run.block);
             let message = "offsets of tools that the table does not have are taken as 0";
@@ -83,10 +83,10 @@ impl Control<'_> {
         let lengths = self.rules.tool_lengths;
         if lengths == ToolLengths::Elsewhere {
             // These have their lengths elsewhere than in H.
-            run.words.take(b'H');
+            let number = run.words.take(b'H').unwrap_or(0.0);
             let message = "the tool length is taken as 0";
             run.report.note_once("no-tool-table", message, span);
-            self.tools.length_guessed = form != ToolLength::Off;
+            self.tools.guessed = (form != ToolLength::Off).then_some(number as u32);
             return;
         }
         let offset = match form {
@@ -105,9 +105,9 @@ impl Control<'_> {
         match form {
             ToolLength::Off => {
                 self.tools.length = None;
-                self.tools.length_guessed = false;
+                self.tools.guessed = None;
             }
-            ToolLength::Given => self.tools.length_guessed = false,
+            ToolLength::Given => self.tools.guessed = None,
             ToolLength::On | ToolLength::Reversed | ToolLength::Added => {}
         }
         if let Some(offset) = offset {
@@ -160,7 +160,8 @@ impl Control<'_> {
         } else {
             number
         };
-        self.tools.length_guessed = self.tools.find(number).is_none() || self.tools.unknown();
+        let guessed = self.tools.find(number).is_none() || self.tools.unknown();
+        self.tools.guessed = guessed.then_some(number);
         let tool = self.known_tool(number, at, run)?;
         let mut offset = self.tool_offsets_mm(&tool);
         if form == ToolLength::Added {
@@ -203,7 +204,8 @@ impl Control<'_> {
             None => self.tools.length.map_or(0, |(_, number)| number),
         };
         self.tools.length = Some((form, number));
-        self.tools.length_guessed = number != 0 && self.tools.find(number).is_none();
+        let guessed = number != 0 && self.tools.find(number).is_none();
+        self.tools.guessed = guessed.then_some(number);
         let tool = if number == 0 {
             Tool::default()
         } else {

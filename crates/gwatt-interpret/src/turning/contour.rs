@@ -176,6 +176,7 @@ impl Control<'_> {
             turning_needs("a depth of cut", number, run);
             return None;
         };
+        let escape_mm = escape_mm.or(self.machine.controller.language.escape_mm);
         if escape_mm.is_none() {
             note_parameter(run);
         }

@@ -32,10 +32,12 @@ impl Control<'_> {
             turning_needs(what, number, run);
             return;
         }
-        let back = self.turning.back.unwrap_or(0.0);
-        if self.turning.back.is_none() {
+        let given = self.machine.controller.language.groove_return_mm;
+        let back = self.turning.back.or(given);
+        if back.is_none() {
             note_parameter(run);
         }
+        let back = back.unwrap_or(0.0);
         let aside = (last - at[across]).signum() * clearance;
         let mut column = at[across];
         loop {

@@ -31,7 +31,8 @@ const Z: usize = 2;
 
 /// Why it is not known how a cycle goes in detail.
 const BY_PARAMETER: &str = "its return, escape or chamfer is a parameter of the control: give it \
-                            in the program (R)";
+                            in the program (R), or escape_mm and groove_return_mm under \
+                            [language] of the machine file";
 
 /// What turning cycles keep from block to block.
 #[derive(Debug, Default)]

@@ -51,9 +51,18 @@ impl Control<'_> {
         run: &mut Run<'_, '_>,
     ) {
         let along = X + Z - deep;
-        let (Some((approach, rest)), Some(last)) = (pieces.split_first(), pieces.last()) else {
+        let Some((approach, rest)) = pieces.split_first() else {
             return;
         };
+        let (rest, way_out) = way_out(approach, rest, along);
+        let Some(last) = rest.last() else { return };
+        if !way_out.is_empty() {
+            run.facts.guessed = Some(WAY_OUT);
+            let whole = run.whole();
+            let message = "the contour ends with a rapid back along the cut: taken for the way \
+                           out of it";
+            run.report.note_once("contour-way-out", message, whole);
+        }
         let start = self.position.at;
         let mut corner = start;
         corner[X] += contour.allowance[0];
@@ -114,6 +123,7 @@ impl Control<'_> {
         place[along] = approach.end[along];
         self.part(run, into, &place);
         self.along(rest, run);
+        self.along(way_out, run);
         self.part(run, MoveKind::Rapid, &start);
     }
 
@@ -191,4 +201,25 @@ impl Control<'_> {
             self.go(run, piece.kind, &piece.end, AxisSet::default(), piece.arc);
         }
     }
+}
+
+/// Why such a cycle stays as it is.
+const WAY_OUT: &str = "its contour ends with a rapid back along the cut";
+
+/// The pieces of a contour, and the rapids at its end that lead back along the cut: a last
+/// block such as `G0 G40 Z2.`, which ends the compensation of the nose radius as well.
+fn way_out<'p>(approach: &Piece, rest: &'p [Piece], along: usize) -> (&'p [Piece], &'p [Piece]) {
+    let contour = rest
+        .iter()
+        .rposition(|piece| piece.kind != MoveKind::Rapid)
+        .map_or(rest.len(), |last| last + 1);
+    let (contour, after) = rest.split_at(contour);
+    let Some(last) = contour.last() else {
+        return (rest, &[]);
+    };
+    let forward = (last.end[along] - approach.end[along]).signum();
+    if after.iter().all(|piece| piece.goes(along, forward)) {
+        return (rest, &[]);
+    }
+    (contour, after)
 }

@@ -15,8 +15,8 @@ use super::parts;
 use super::plausible;
 use super::quantity::{Given, Quantities, form};
 use super::servo;
-use super::value::{At, Num, Part};
-use crate::axis::{Axis, AxisId, AxisKind};
+use super::value::{At, Num, Number, Part};
+use crate::axis::{Axis, AxisId, AxisKind, FURTHER_REFERENCES};
 use crate::units::{M_PER_MM, RAD_PER_DEG, SECONDS_PER_MINUTE};
 
 /// Errors of all axes that give none of their own.
@@ -129,6 +129,7 @@ impl Builder {
                 / SECONDS_PER_MINUTE,
             reference_mm_s: reference_mm_s.unwrap_or(f64::INFINITY),
             reference_mm,
+            further_reference_mm: self.further(findings, table.further_reference_mm.as_ref()),
             accel_mm_s2: accel.value,
             jerk_mm_s3: value(table.jerk_mm_s3.as_ref(), 0.0),
             mass_kg: mass.value,
@@ -247,6 +248,27 @@ impl Builder {
         (reference_mm_s, reference_mm)
     }
 
+    /// The places of further reference points, in order.
+    fn further(
+        &self,
+        findings: &mut Findings<'_>,
+        given: Option<&At<Vec<Number>>>,
+    ) -> [Option<f64>; FURTHER_REFERENCES] {
+        let mut places = [None; FURTHER_REFERENCES];
+        let Some(given) = given else { return places };
+        if given.value.len() > places.len() {
+            let message = format!(
+                "axis {} has {FURTHER_REFERENCES} further reference points at most",
+                self.letter
+            );
+            findings.error("machine-range", &given.span, message, None);
+        }
+        for (place, number) in places.iter_mut().zip(&given.value) {
+            *place = Some(number.value);
+        }
+        places
+    }
+
     fn rotary(&self, findings: &mut Findings<'_>, table: &AxisTable) -> Option<Axis> {
         let gear = value(table.gear_ratio.as_ref(), 1.0);
         let squared = gear * gear;
@@ -319,6 +341,7 @@ impl Builder {
             reference_mm_s: value(table.reference_deg_min.as_ref(), f64::INFINITY)
                 / SECONDS_PER_MINUTE,
             reference_mm: table.reference_deg.as_ref().map(|number| number.value),
+            further_reference_mm: self.further(findings, table.further_reference_deg.as_ref()),
             mass_kg: inertia.value,
             coulomb_n,
             viscous_n_s_m,
@@ -337,6 +360,7 @@ impl Builder {
             max_feed_mm_s: f64::INFINITY,
             reference_mm_s: f64::INFINITY,
             reference_mm: None,
+            further_reference_mm: [None; FURTHER_REFERENCES],
             accel_mm_s2: 0.0,
             jerk_mm_s3: 0.0,
             mass_kg: 0.0,
@@ -403,6 +427,11 @@ fn of_rotary_axes(t: &AxisTable) -> Vec<Foreign> {
         ("reference_deg_min", reference_speed, "reference_mm_min"),
         ("reference_deg", reference, "reference_mm"),
         (
+            "further_reference_deg",
+            place(t.further_reference_deg.as_ref()),
+            "further_reference_mm",
+        ),
+        (
             "max_feed_deg_min",
             span(t.max_feed_deg_min.as_ref()),
             "max_feed_mm_min",
@@ -425,6 +454,11 @@ fn of_linear_axes(t: &AxisTable) -> Vec<Foreign> {
         ("rapid_mm_min", rapid, "rapid_deg_min"),
         ("reference_mm_min", reference_speed, "reference_deg_min"),
         ("reference_mm", reference, "reference_deg"),
+        (
+            "further_reference_mm",
+            place(t.further_reference_mm.as_ref()),
+            "further_reference_deg",
+        ),
         (
             "max_feed_mm_min",
             span(t.max_feed_mm_min.as_ref()),

@@ -34,6 +34,11 @@ pub(crate) struct AxisTable {
     /// homing (G28 of a printer, grbl's $H) the next move counts at full speed and
     /// acceleration.
     pub(crate) reference_mm: Option<Number>,
+    /// Linear: machine coordinates of further points in mm: those of G30 from the second on
+    /// (Fanuc's parameters 1241 to 1243), or the fixed points of SINUMERIK's G75 from the first
+    /// on (MD30600); default: not known.
+    #[schemars(length(max = 4))]
+    pub(crate) further_reference_mm: Option<At<Vec<Number>>>,
     /// The same as `reference_mm_min`, by an earlier name.
     pub(crate) home_mm_min: Option<Positive>,
     /// The same as `reference_mm`, by an earlier name.
@@ -44,6 +49,9 @@ pub(crate) struct AxisTable {
     pub(crate) reference_deg_min: Option<Positive>,
     /// Rotary: machine coordinate of the reference point in degrees; default: not known.
     pub(crate) reference_deg: Option<Number>,
+    /// Rotary: machine coordinates of further points in degrees, see `further_reference_mm`.
+    #[schemars(length(max = 4))]
+    pub(crate) further_reference_deg: Option<At<Vec<Number>>>,
     /// Rotary: rapid speed in degrees/min.
     pub(crate) rapid_deg_min: Option<Positive>,
     /// Largest speed of the motor (of the table without `gear_ratio`) in 1/min.

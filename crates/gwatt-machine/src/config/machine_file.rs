@@ -188,6 +188,12 @@ pub(crate) struct OwnLanguageTable {
     pub(crate) pecks_return_to_r: Option<bool>,
     /// How far G73 and G83 stay off the last depth, in mm (Fanuc: parameters 5114 and 5115).
     pub(crate) peck_clearance_mm: Option<Positive>,
+    /// How far the tool goes off after a pass of G71 and G72 of a lathe that gives no R, in mm
+    /// (Fanuc: parameter 5133; Haas: Setting 73).
+    pub(crate) escape_mm: Option<NotNegative>,
+    /// How far it goes back after a peck of G74 and G75 of a lathe that gives no R, in mm
+    /// (Fanuc: parameter 5139; Haas: Setting 22).
+    pub(crate) groove_return_mm: Option<NotNegative>,
     /// How arc centres I J K are meant at power-on.
     pub(crate) arc_centre: Option<DistanceName>,
     /// How G41 and G42 shift the path.

@@ -4,7 +4,7 @@
 use super::controller_file::{DistanceName, UnitsName};
 use super::findings::Findings;
 use super::machine_file::OwnLanguageTable;
-use super::value::At;
+use super::value::{At, NotNegative};
 use super::{printer, profile};
 use crate::controller::Language;
 use crate::units::SECONDS_PER_MINUTE;
@@ -29,6 +29,9 @@ pub(crate) fn take(
     if let Some(clearance) = &own.peck_clearance_mm {
         language.peck_clearance_mm = clearance.value;
     }
+    let given = |length: &Option<NotNegative>| length.as_ref().map(|length| length.value);
+    language.escape_mm = given(&own.escape_mm);
+    language.groove_return_mm = given(&own.groove_return_mm);
     if let Some(feed) = &own.power_on_feed_mm_min {
         language.power_on_feed_mm_s = feed.value / SECONDS_PER_MINUTE;
     }

@@ -99,6 +99,8 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         mill_cycles: table.mill_cycles.unwrap_or(false),
         pecks_return_to_r: table.pecks_return_to_r.unwrap_or(false),
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
+        escape_mm: None,
+        groove_return_mm: None,
         arc_tolerance_mm: table
             .arc_tolerance_mm
             .as_ref()

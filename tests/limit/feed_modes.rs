@@ -1,0 +1,60 @@
+//! Rapids where F is no length per minute: they get a feed per minute of their own, between the
+//! words for it and for what was in force.
+
+use insta::assert_snapshot;
+
+use crate::shop::Shop;
+
+fn shop(controller: &str, power_w: f64) -> Shop {
+    let converter = format!("peak_power_w = {power_w}");
+    Shop::mill(controller, &converter, "[path]\nrapid = \"linear\"", "")
+}
+
+/// What is written, which fits when it is read again.
+fn limited(shop: &Shop, program: &str) -> String {
+    shop.put("a.nc", program);
+    let (code, text, errors) = shop.run("limit a.nc");
+    assert_eq!(code, 0, "{errors}");
+    shop.put("out.nc", &text);
+    let (code, _, errors) = shop.run("check out.nc");
+    assert_eq!(code, 0, "{errors}\n{text}");
+    text
+}
+
+/// Each mode of SINUMERIK has a kin with a feed per minute and the same rule for the spindle, so
+/// that constant surface speed goes on.
+#[test]
+fn sinumerik_keeps_the_rule_for_the_spindle() {
+    let program = |mode: &str| {
+        format!("G18 G54 G90 G60\nLIMS=3000\n{mode}\nG0 X400 Z300\nG1 Z250 F0.2\nG0 X0 Z0\nM30\n")
+    };
+    let shop = shop("siemens", 600.0);
+    assert_snapshot!(limited(&shop, &program("G96 S200 M3")), @"");
+    assert_snapshot!(limited(&shop, &program("G97 S2000 M3")), @"");
+    assert_snapshot!(limited(&shop, &program("S2000 M3 G95")), @"");
+}
+
+/// Under an inverse time each block has its own F, so that none is put back.
+#[test]
+fn an_inverse_time_has_no_feed_to_put_back() {
+    let program = "G21 G90 G54 G93\nG0 X400. Y300.\nG1 X390. F100.\nG0 X0. Y0.\nM30\n";
+    assert_snapshot!(limited(&shop("fanuc", 600.0), program), @"");
+    assert_snapshot!(limited(&shop("linuxcnc", 600.0), program), @"");
+    assert_snapshot!(limited(&shop("grbl", 600.0), program), @"");
+}
+
+/// A block that says itself what F means stays as it is.
+#[test]
+fn the_word_of_the_block_itself() {
+    let shop = shop("siemens", 600.0);
+    shop.put(
+        "a.nc",
+        "G18 G54 G90 G60 S2000 M3\nG0 G95 X400 Z300\nG1 Z250 F0.2\nM30\n",
+    );
+    let (code, _, errors) = shop.run("limit a.nc");
+    assert_eq!(code, 1, "{errors}");
+    assert!(
+        errors.contains("the feed in force is per revolution"),
+        "{errors}"
+    );
+}
