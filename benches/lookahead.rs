@@ -65,6 +65,7 @@ fn moves() -> Vec<Move> {
             end,
             moving: AxisSet(7),
             unknown_start: AxisSet(0),
+            assumed_start: AxisSet(0),
             arc: None,
             length_mm: travel.sum::<f64>().sqrt(),
             feed_mm_s: 80.0,

@@ -39,6 +39,7 @@ fn feed() -> Move {
         end,
         moving: AxisSet(7),
         unknown_start: AxisSet(0),
+        assumed_start: AxisSet(0),
         arc: None,
         length_mm: f64::sqrt(9.0 + 4.0 + 2.25),
         feed_mm_s: 100.0,

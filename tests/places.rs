@@ -5,6 +5,7 @@ use crate::shop::Shop;
 
 /// Full speed of one axis: 100 W, and 0.5 m/s · (200 kg · 3 m/s² + 100 N) / 0.8 = 437.5 W.
 const FULL_W: f64 = 537.5;
+const NONE: [u64; 0] = [];
 
 /// The peaks of the moves by line, W; blocks of no length have none.
 fn peaks(shop: &Shop, program: &str, options: &str) -> Vec<(u64, f64)> {
@@ -39,13 +40,13 @@ fn from_one_work_offset_to_another() {
     let unknown = shop("fanuc", "", "");
     assert_eq!(full(&unknown, program, ""), [5, 7]);
     let known = shop("fanuc", "[offsets]\nG54 = { X = 5 }\nG55 = { X = 5 }", "");
-    assert_eq!(full(&known, program, ""), []);
+    assert_eq!(full(&known, program, ""), NONE);
     // One is not enough.
     let one = shop("fanuc", "[offsets]\nG54 = { X = 5 }", "");
     assert_eq!(full(&one, program, ""), [5, 7]);
     // The program sets it.
     let sets = program.replace("G55\n", "G55\nG10 L2 P2 X5.\n");
-    assert_eq!(full(&one, &sets, ""), []);
+    assert_eq!(full(&one, &sets, ""), NONE);
 }
 
 /// To a reference point, and back from there; between returns to the same one nothing moves.
@@ -61,7 +62,7 @@ fn to_and_from_a_reference_point() {
     assert_eq!(full(&shop("fanuc", offsets, ""), program, ""), [3, 5]);
     assert_eq!(
         full(&shop("fanuc", offsets, "reference_mm = 6"), program, ""),
-        []
+        NONE
     );
     // Further points have places of their own.
     let second = program.replace("G28", "G30");
@@ -70,9 +71,9 @@ fn to_and_from_a_reference_point() {
         [3, 5]
     );
     let further = "further_reference_mm = [6, 7]";
-    assert_eq!(full(&shop("fanuc", offsets, further), &second, ""), []);
+    assert_eq!(full(&shop("fanuc", offsets, further), &second, ""), NONE);
     let third = program.replace("G28", "G30 P3");
-    assert_eq!(full(&shop("fanuc", offsets, further), &third, ""), []);
+    assert_eq!(full(&shop("fanuc", offsets, further), &third, ""), NONE);
     let fourth = program.replace("G28", "G30 P4");
     assert_eq!(full(&shop("fanuc", offsets, further), &fourth, ""), [3, 5]);
 }
@@ -93,7 +94,7 @@ fn from_one_tool_length_to_another() {
     let shop = shop("fanuc", "[offsets]\nG54 = { Z = 0 }", "");
     assert_eq!(full(&shop, program, ""), [3, 6, 7]);
     shop.put("tools.tbl", "T1 P1 Z1\nT2 P2 Z1\n");
-    assert_eq!(full(&shop, program, "--tool-table tools.tbl"), []);
+    assert_eq!(full(&shop, program, "--tool-table tools.tbl"), NONE);
 }
 
 /// Machine coordinates, on other controls too.
@@ -101,18 +102,19 @@ fn from_one_tool_length_to_another() {
 fn machine_coordinates() {
     let program = "G21 G90 G54\nG0 Z1.\nG53 G0 Z2.\nG53 G0 Z3.\nG0 Z1.\nM30\n";
     for controller in ["fanuc", "linuxcnc", "grbl"] {
-        let peaks = full(&shop(controller, "", ""), program, "");
+        let stops = "[path]\nmode = \"exact-stop\"\n";
+        let peaks = full(&shop(controller, stops, ""), program, "");
         assert_eq!(peaks, [3, 5], "{controller}");
-        let offsets = "[offsets]\nG54 = { Z = 1 }";
-        assert_eq!(full(&shop(controller, offsets, ""), program, ""), []);
+        let offsets = format!("{stops}[offsets]\nG54 = {{ Z = 1 }}");
+        assert_eq!(full(&shop(controller, &offsets, ""), program, ""), NONE);
     }
     let program =
-        "G71 G90 G54\nG0 Z1\nSUPA G0 Z2\nSUPA G0 Z3\nG0 Z1\nG75 Z1=0\nG75 FP=2 Z1=0\nM30\n";
+        "G71 G90 G60 G54\nG0 Z1\nSUPA G0 Z2\nSUPA G0 Z3\nG0 Z1\nG75 Z1=0\nG75 FP=2 Z1=0\nM30\n";
     let unknown = shop("siemens", "", "");
     assert_eq!(full(&unknown, program, ""), [3, 5, 6, 7]);
     let known = "[offsets]\nG54 = { Z = 1 }";
     let known = shop("siemens", known, "further_reference_mm = [2, 3]");
-    assert_eq!(full(&known, program, ""), []);
+    assert_eq!(full(&known, program, ""), NONE);
 }
 
 /// Printers move by differences: their homing says where they are.
@@ -120,5 +122,6 @@ fn machine_coordinates() {
 fn printers_know_where_they_are() {
     let program = "G21\nG90\nG28\nG0 X1 F30000\nG92 X5\nG0 X6\nM104 S0\n";
     let homed = shop("marlin", "", "reference_mm = 0");
-    assert_eq!(full(&homed, program, ""), []);
+    // Homing itself comes from anywhere.
+    assert_eq!(full(&homed, program, ""), [3]);
 }

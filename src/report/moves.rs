@@ -57,7 +57,7 @@ impl<'a> MoveLine<'a> {
             start: Coordinates {
                 values: &mv.start,
                 axes,
-                unknown: mv.unknown_start,
+                unknown: AxisSet(mv.unknown_start.0 & !mv.assumed_start.0),
             },
             end: Coordinates {
                 values: &mv.end,

@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use super::number::{decimal, rounded, with_blanks};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Modal, Motion, Move, MoveKind, Step, TOOL_CHANGE_UNKNOWN};
-use crate::machine::{ALL_AXES, AxisId, AxisValues, ToolChange};
+use crate::machine::{ALL_AXES, AxisId, AxisSet, AxisValues, ToolChange};
 use crate::source::split_line_end;
 use crate::syntax::{Block, Word};
 
@@ -60,9 +60,6 @@ impl Return<'_> {
         let (Some(mv), None) = (moves.next(), moves.next()) else {
             return Err("it makes more than one move");
         };
-        if !mv.unknown_start.is_empty() {
-            return Err("it starts from a place that is not known");
-        }
         let after = match self.motion_before {
             Motion::Rapid => None,
             Motion::Linear => Some("G1"),
@@ -75,7 +72,7 @@ impl Return<'_> {
         let line_end: &[u8] = if line_end.is_empty() { b"\n" } else { line_end };
         let mut words = String::from("SUPA G0");
         for axis in ALL_AXES {
-            if mv.moving.contains(axis as usize) {
+            if commanded(mv).contains(axis as usize) {
                 let value = decimal(rounded(mv.end[axis as usize] / mm_per_unit), true);
                 let _ = write!(words, " {}=AC({value})", char::from(axis.letter()));
             }
@@ -114,9 +111,6 @@ impl Return<'_> {
         }
         let mut last = None;
         for mv in self.moves() {
-            if !mv.unknown_start.is_empty() {
-                return Err("it starts from a place that is not known");
-            }
             if mv.kind != MoveKind::Rapid {
                 return Err("not all of its moves are rapids");
             }
@@ -176,7 +170,7 @@ impl Return<'_> {
     fn way(&self, mv: &Move, end: &AxisValues) -> String {
         let mut words = String::from(if self.absolute_before { "G0" } else { "G90 G0" });
         for axis in ALL_AXES {
-            if mv.moving.contains(axis as usize) {
+            if commanded(mv).contains(axis as usize) {
                 let value = decimal(rounded(end[axis as usize]), true);
                 let _ = write!(words, " {}{value}", char::from(axis.letter()));
             }
@@ -222,4 +216,9 @@ impl Return<'_> {
             _ => None,
         }
     }
+}
+
+/// Axes that move, or may, as it is not known where they start.
+fn commanded(mv: &Move) -> AxisSet {
+    AxisSet(mv.moving.0 | mv.unknown_start.0)
 }

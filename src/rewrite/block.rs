@@ -286,7 +286,7 @@ impl<'m> Rewriter<'m> {
         let feed = view.after.feed.as_ref();
         let feed = feed.filter(|_| view.after.feed_mode == FeedMode::PerRevolution);
         if let Some(feed) = feed {
-            let _ = write!(words, " F{}", feed_again(feed, view.after.mm_per_unit));
+            let _ = write!(words, " F{}", feed_again(feed, view.facts.feed_mm_per_unit));
         }
         self.insert_line(&words, out);
         self.written = Written {

@@ -9,8 +9,9 @@ use crate::machine::{ALL_AXES, AxisValues};
 use crate::source::split_line_end;
 use crate::syntax::{Block, Word, scan_line};
 
-/// Words of a contour that would act otherwise outside of its cycle, G words times ten.
-const COMPENSATION: [u16; 3] = [400, 410, 420];
+/// Words of a contour that would act otherwise outside of its cycle, G words times ten. G40
+/// does nothing where none of them comes before it.
+const COMPENSATION: [u16; 2] = [410, 420];
 
 /// A line of a contour that no cycle reads any more: a comment. `None` where it says nothing.
 #[must_use]

@@ -278,7 +278,6 @@ fn blocks_that_keep_their_words_keep_them_in_files_too() {
     let inverse = "O0100\nG93 G1 X0. F60.\nG94\nM99\n";
     refused(inverse, &feed, 1, "its feed is an inverse time (G93)");
     refused("O0100\nG33 X0. F30.\nM99\n", &feed, 2, "G33 is thread");
-    refused(HOME, &["--start", "unknown"], 1, "where it starts is not");
     refused("O0100\nG1 X0. F30000\nM99\n", &[], 1, "without permission");
     refused("O0100\nG0 X0.\n", &[], 2, "without a return");
 }

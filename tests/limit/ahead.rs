@@ -114,6 +114,10 @@ fn what_may_stop_the_motion_counts_as_far_as_it_reaches() {
 #[test]
 fn words_stop_the_motion_as_the_profile_says() {
     let same = |rig: Rig, word: &str, like: &str| {
+        let rig = Rig {
+            rest: "[offsets]\nG54 = { X = 0 }\nG55 = { X = 0 }\n",
+            ..rig
+        };
         let [rows, expected] = [word, like].map(|word| report(rig, &short_lines(word)));
         assert_eq!(rows, expected, "{word}");
     };

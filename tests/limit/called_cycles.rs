@@ -23,7 +23,7 @@ fn limited(power_w: f64, program: &str, options: &str) -> String {
 
 /// The message of a program that stays as it is.
 fn stays(program: &str, options: &str) -> String {
-    let shop = shop(600.0);
+    let shop = shop(400.0);
     shop.put("a.nc", program);
     let (code, text, errors) = shop.run(format!("limit a.nc {options}").trim_end());
     assert_eq!((code, text.as_str()), (1, ""), "{errors}");

@@ -309,7 +309,8 @@ fn what_is_not_written_out_is_said() {
     };
     let contour = "N10 G0 X30.\nG1 Z-60.\nN20 X60. Z-70.\nG0 X66. Z4.\n";
     let parameter = "its return, escape or chamfer is a parameter of the control: give it in the \
-                     program (R)";
+                     program (R), or escape_mm and groove_return_mm under [language] of the machine \
+                     file";
     stays("G92 X50. Z-80. F2.\nG0 X66. Z4.\n", "it cuts a thread");
     stays(
         "G76 P010060 Q100 R0.05\nG76 X50. Z-80. P1300 Q900 F2.\nG0 X66. Z4.\n",

@@ -193,13 +193,8 @@ fn rapids_that_another_mode_would_help() {
          feed by hand",
     );
     let revolution = "the feed in force is per revolution";
-    // Where G94 would end constant surface speed, and where the block itself says G95.
-    let siemens = Rig {
-        controller: "siemens",
-        ..RIG
-    };
+    // Where the block itself says G95.
     let help = "program G94 (feed per minute) and F in it before the rapid";
-    no_knob(siemens, "G95 S100 M3\nG0 X400\n", 2, revolution, help);
     no_knob(RIG, "S100 M3\nG95 G0 X400\n", 2, revolution, help);
     let lathe = Rig {
         controller: "fanuc-lathe",
@@ -217,16 +212,22 @@ fn rapids_that_another_mode_would_help() {
 
 #[test]
 fn rapids_from_an_unknown_start() {
-    let mut rig = RIG;
+    let mut rig = Rig {
+        rest: "[path]\nrapid = \"independent\"\n",
+        ..RIG
+    };
     rig.options.unknown_start = true;
     stopped(
         rig,
-        "G0 X400\nX0\n",
+        "G0 X400 Y300\nX0\n",
         1,
         "no-knob",
         "the rapid may not be written as a feed: where it starts is not known",
-        "give --start X…,Y…,Z…, or write the move as a feed by hand",
+        "give --start X…,Y…,Z…, or what its place rests on ([offsets], reference_mm, \
+         --tool-table); or write the move as a feed by hand",
     );
+    // One axis moves on a line, at an F that is no faster wherever it starts: 1 kW of 2.5 kW.
+    assert_eq!(rig.fits("G0 X400\nX0\n"), "");
     // Feeds may be lowered, and what follows starts where it is known.
     assert_eq!(
         rig.fits("G1 X400 F30000\nG0 X0\n"),

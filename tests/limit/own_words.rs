@@ -100,7 +100,7 @@ fn reference_points_that_nobody_gave() {
         ("linuxcnc", "G28", "--parameters, or reference_mm"),
         ("grbl", "G28", "--parameters, or reference_mm"),
         ("linuxcnc", "G30", "give the control's --parameters"),
-        ("fanuc", "G30 X0 Y0 Z0", "only the control knows this point"),
+        ("fanuc", "G30 X0 Y0 Z0", "further_reference_mm of the axes"),
     ] {
         let shop = shop(
             controller,

@@ -150,7 +150,7 @@ fn the_speed_of_homing_is_not_that_of_a_rapid() {
 /// RS274/NGC takes G53 with G1.
 #[test]
 fn machine_coordinates_with_a_feed() {
-    let shop = shop("grbl", "", "");
+    let shop = shop("grbl", PLACES, "");
     let program = "G21 G90 G1 X1 F500\nG53 G0 X400 Y300\nG1 X2\nM2\n";
     let (code, text, errors) = limited(&shop, program, "");
     assert_eq!(code, 0, "{errors}");
@@ -203,15 +203,18 @@ fn random_programs_return_to_the_same_places() {
 /// What is said of the way that is gone before a return shows the block of the program.
 #[test]
 fn reasons_show_the_block_that_returns() {
-    let shop = shop("fanuc", PLACES, "reference_mm = 0");
-    let program = "G21 G90 G94 G54\nG0 X0 Y0\nG93\nG91 G28 X0 Y0\nG94 G90\nM30\n";
+    let independent = PLACES.replace("[offsets]", "rapid = \"independent\"\n[offsets]");
+    let shop = shop("fanuc", &independent, "reference_mm = 0");
+    let machine = shop.get("mill.toml");
+    shop.put("mill.toml", &machine.replace("rapid = \"linear\"\n", ""));
+    let program = "G21 G90 G94 G54\nG0 X1 Y1\nG91 G28 X0 Y0\nG90\nM30\n";
     let (code, out, errors) = limited(&shop, program, "--allow feed -o out.nc");
     assert_eq!(code, 1, "{errors}");
     assert!(
-        errors.contains("its feed is an inverse time (G93)") && errors.contains("a.nc:4:1\n"),
+        errors.contains("its axes move each for itself") && errors.contains("a.nc:3:1\n"),
         "{errors}"
     );
     let all = format!("{out}{errors}");
-    assert!(all.contains("4 | G91 G28 X0 Y0\n"), "{all}");
+    assert!(all.contains("3 | G91 G28 X0 Y0\n"), "{all}");
     assert!(!all.contains("G0 X"), "{all}");
 }

@@ -170,6 +170,7 @@ fn chords_of_a_helix_end_where_it_ends() {
         end,
         moving: AxisSet(7),
         unknown_start: AxisSet(0),
+        assumed_start: AxisSet(0),
         arc: Some(gwatt::interpret::Arc {
             plane: [0, 1],
             center: [-10.0, 0.0],

@@ -82,7 +82,6 @@ const STOP: [&str; 29] = [
     "G92 X20",
     "G92.1",
     "G92.2",
-    "G92.3",
     "G97 S500",
     "S500",
     "S0",
@@ -100,7 +99,7 @@ const STOP: [&str; 29] = [
 
 fn machine() -> Machine {
     let mut text = "schema = 1\nname = \"test\"\ncontroller = \"linuxcnc\"\n\
-         [converter]\npeak_power_w = 1e6\n"
+         [converter]\npeak_power_w = 1e6\n[offsets]\nG54 = { X = 0 }\nG55 = { X = 0 }\n"
         .to_owned();
     for letter in ["X", "Y", "Z"] {
         let _ = write!(

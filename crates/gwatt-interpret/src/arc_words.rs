@@ -6,7 +6,7 @@ use super::control::{Control, Run};
 use super::places::STANDSTILL_MM;
 use super::turned_arc::Tilted;
 use gwatt_machine::units::MM_PER_INCH;
-use gwatt_machine::{ALL_AXES, AxisKind, AxisSet};
+use gwatt_machine::{ALL_AXES, AxisKind};
 use gwatt_motion::{Arc, MoveKind};
 use gwatt_syntax::source::Span;
 
@@ -25,8 +25,6 @@ impl Control<'_> {
         };
         let [first, second, normal] = self.modal.plane;
         let touched = self.position.unknown;
-        // An arc fits only the place from which it was written.
-        let unknown = AxisSet(unknown.0 & touched.0);
         let printer = self.rules.relative_places;
         if printer && (touched.contains(first) || touched.contains(second)) {
             return self.arc_from_unknown(run, &end, unknown);

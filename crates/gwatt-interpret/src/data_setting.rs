@@ -7,6 +7,7 @@ use super::offsets::{FURTHER, FURTHER_MAX, SYSTEMS};
 use super::places::POSITION_MAX_MM;
 use super::tool_table::Tool;
 use super::tools::words::tool_number;
+use arrayvec::ArrayVec;
 use gwatt_machine::{ALL_AXES, AXES, AxisValues};
 use gwatt_syntax::source::Span;
 
@@ -136,6 +137,9 @@ impl Control<'_> {
                 offsets.load();
             }
         });
+        for &(axis, _) in words.iter().filter(|_| from_place) {
+            self.origin_from_place(system, axis);
+        }
         self.note_bent();
     }
 
@@ -303,6 +307,16 @@ impl Control<'_> {
         let add = !self.modal.absolute;
         let system = number as u16 + if further { FURTHER } else { 0 };
         let add_to = |before: f64, value: f64| if add { before + value } else { value };
+        let known = |axis| self.position.offsets().is_origin_known(system, axis);
+        let unknown = words
+            .iter()
+            .map(|word| word.0)
+            .filter(|axis| add && !known(*axis));
+        let unknown: ArrayVec<usize, AXES> = unknown.collect();
+        if system == 0 {
+            // What it was before is not known either.
+            self.set_all_unknown();
+        }
         self.position.change(|offsets| {
             let mut values = if system == 0 {
                 offsets.external
@@ -317,6 +331,9 @@ impl Control<'_> {
             } else {
                 for &(axis, _) in words {
                     offsets.set_origin_of(system, axis, values[axis]);
+                }
+                for axis in unknown {
+                    offsets.forget_origin(system, axis);
                 }
             }
             if system == offsets.system {

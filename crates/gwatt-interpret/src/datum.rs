@@ -2,9 +2,7 @@
 //! point was taken as 0, since nobody has given it, can be compared only with those that rest
 //! on the same one: how far it is from one to another is not known.
 
-use super::control::Control;
-use super::position::Position;
-use gwatt_machine::{AXES, AxisId, AxisSet};
+use gwatt_machine::AXES;
 
 /// What the machine coordinate of an axis rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -23,185 +21,132 @@ pub(super) enum Datum {
         system: u16,
         /// The tool or its offset.
         tool: u32,
-        /// Coordinates were set (G92) at a place that rested on something else.
-        set_elsewhere: bool,
+        /// How often coordinates had been set at places that rest on something else.
+        set: u32,
     },
+    /// Nothing that another place could rest on.
+    Nothing,
 }
 
 impl Datum {
     /// Whether it is known how far it is from one place to the other.
-    fn compares(self, other: Self) -> bool {
-        self == other || self == Self::Start || other == Self::Start
+    pub(super) fn compares(self, other: Self) -> bool {
+        let either = |datum: Self| self == datum || other == datum;
+        !either(Self::Nothing) && (self == other || either(Self::Start))
     }
+}
+
+/// Coordinates that were set at a place (G92).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct SetHere {
+    /// What the coordinates rest on while the offsets stay.
+    on: Datum,
+    /// What coordinates rested on by the offsets in force then.
+    offsets: Datum,
+    /// The number of the setting.
+    number: u32,
 }
 
 /// What the places of all axes rest on.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Datums {
     places: [Datum; AXES],
-    /// Where coordinates were set (G92): what the place rested on, and what coordinates
-    /// of the program did.
-    set_at: [Option<(Datum, Datum)>; AXES],
+    set_here: [Option<SetHere>; AXES],
+    /// What the points of G28 and G30 rest on that the program has stored.
+    stored: [[Option<Datum>; AXES]; 2],
+    /// How often coordinates were set.
+    number: u32,
+    /// The work coordinate system in force, where the language keeps its offsets itself.
+    pub(super) own_system: Option<u16>,
 }
 
 impl Datums {
+    /// What the place of an axis rests on.
+    pub(super) fn of(&self, axis: usize) -> Datum {
+        self.places[axis]
+    }
+
     /// Where an axis stands rests on this from now on.
     pub(super) fn place(&mut self, axis: usize, on: Datum) {
         self.places[axis] = on;
     }
 
-    /// The coordinates of an axis are counted from where it stands.
-    fn set_here(&mut self, axis: usize, offsets: Datum) {
-        self.set_at[axis] = Some((self.places[axis], offsets));
+    /// The coordinates of an axis are counted from where it stands, under offsets that rest
+    /// on this.
+    pub(super) fn set_here(&mut self, axis: usize, offsets: Datum) {
+        self.number += 1;
+        let on = match self.places[axis] {
+            Datum::Start | Datum::Nothing => self.fresh(offsets),
+            place => place,
+        };
+        if self.places[axis] == Datum::Nothing {
+            self.places[axis] = on;
+        }
+        self.set_here[axis] = Some(SetHere {
+            on,
+            offsets,
+            number: self.number,
+        });
+    }
+
+    /// The coordinates of all axes were set to something that is not known.
+    pub(super) fn set_unknown(&mut self, axis: usize, offsets: Datum) {
+        self.number += 1;
+        let on = self.fresh(offsets);
+        self.set_here[axis] = Some(SetHere {
+            on,
+            offsets,
+            number: self.number,
+        });
+    }
+
+    fn fresh(&self, offsets: Datum) -> Datum {
+        let (system, tool) = match offsets {
+            Datum::Offsets { system, tool, .. } => (system, tool),
+            _ => (0, 0),
+        };
+        Datum::Offsets {
+            system,
+            tool,
+            set: self.number,
+        }
     }
 
     /// No coordinates are set any more.
     pub(super) fn forget_set(&mut self) {
-        self.set_at = Default::default();
-    }
-}
-
-impl Position {
-    /// Whether it is not known how far it is from where an axis stands to a place.
-    pub(super) fn is_apart(&self, axis: usize, place: Datum) -> bool {
-        self.unknown.contains(axis) || !self.datums.places[axis].compares(place)
+        self.set_here = Default::default();
     }
 
-    /// Whether the place of an axis is known, and rests on just this.
-    fn rests_on(&self, axis: usize, datum: Datum) -> bool {
-        !self.unknown.contains(axis) && self.datums.places[axis] == datum
-    }
-}
-
-impl Control<'_> {
-    /// What absolute coordinates of the program rest on.
-    pub(super) fn program_datum(&self, axis: usize) -> Datum {
-        let offsets = self.offsets_datum(axis);
-        match self.position.datums.set_at[axis] {
-            None | Some((Datum::Start | Datum::Machine, _)) => offsets,
-            Some((place, then)) if then == offsets => place,
-            Some(_) => match offsets {
+    /// What coordinates of the program rest on, where the offsets in force do so.
+    pub(super) fn of_program(&self, axis: usize, offsets: Datum) -> Datum {
+        match self.set_here[axis] {
+            None => offsets,
+            Some(set) if set.offsets == offsets => set.on,
+            // A shift between known places holds under known offsets as well.
+            Some(set) if set.on == Datum::Machine && set.offsets == Datum::Machine => offsets,
+            Some(set) => match offsets {
                 Datum::Offsets { system, tool, .. } => Datum::Offsets {
                     system,
                     tool,
-                    set_elsewhere: true,
+                    set: set.number,
                 },
                 _ => Datum::Offsets {
                     system: 0,
                     tool: 0,
-                    set_elsewhere: true,
+                    set: set.number,
                 },
             },
         }
     }
 
-    /// What they rest on by the offsets in force.
-    fn offsets_datum(&self, axis: usize) -> Datum {
-        // Only differences of positions matter to a printer.
-        if self.rules.relative_places {
-            return Datum::Machine;
-        }
-        let offsets = self.position.offsets();
-        let system = if offsets.is_known_of(axis) {
-            0
-        } else {
-            offsets.system
-        };
-        match (system, self.guessed_tool(axis)) {
-            (0, 0) => Datum::Machine,
-            (system, tool) => Datum::Offsets {
-                system,
-                tool,
-                set_elsewhere: false,
-            },
-        }
+    /// G28.1 and G30.1: the place of an axis becomes that of a point, 1 or 2.
+    pub(super) fn store(&mut self, point: usize, axis: usize) {
+        self.stored[point - 1][axis] = Some(self.places[axis]);
     }
 
-    /// What coordinates of the machine rest on: a tool's length holds there too on SINUMERIK.
-    pub(super) fn machine_datum(&self, axis: usize) -> Datum {
-        let tool = if self.rules.returns_suspend_frames {
-            self.guessed_tool(axis)
-        } else {
-            0
-        };
-        if tool == 0 {
-            return Datum::Machine;
-        }
-        Datum::Offsets {
-            system: 0,
-            tool,
-            set_elsewhere: false,
-        }
-    }
-
-    /// The tool or offset whose values were taken as 0, plus 1; 0 where all is known.
-    fn guessed_tool(&self, axis: usize) -> u32 {
-        let lathe = self.machine.controller.language.dialect.lathe.is_some();
-        let selected = self.tools.selected;
-        let guessed = if lathe && self.rules.t_selects_offset {
-            self.tools.guessed
-        } else if lathe {
-            Some(selected).filter(|tool| *tool != 0)
-        } else if self.rules.returns_suspend_frames {
-            // In G17 the tool is long along Z; a lathe's has two lengths.
-            let along = axis == AxisId::Z as usize || self.modal.plane[2] != AxisId::Z as usize;
-            let chosen = selected != 0 && self.choice.number != Some(0);
-            Some(selected).filter(|_| chosen && along)
-        } else {
-            let along = axis == AxisId::Z as usize || self.modal.diameter;
-            self.tools.guessed.filter(|_| along)
-        };
-        guessed.map_or(0, |tool| tool.saturating_add(1))
-    }
-
-    /// An axis goes to an absolute coordinate: whether it is not known how far that is.
-    pub(super) fn places(&mut self, axis: usize, machine_coordinates: bool) -> bool {
-        let datum = if machine_coordinates {
-            self.machine_datum(axis)
-        } else {
-            self.program_datum(axis)
-        };
-        let apart = self.position.is_apart(axis, datum);
-        self.position.datums.place(axis, datum);
-        apart
-    }
-
-    /// The same for those that a block names by absolute coordinates, and for those that
-    /// turned coordinates move with them: the axes of which it is not known how far they go.
-    pub(super) fn place_all(
-        &mut self,
-        named: AxisSet,
-        absolute: AxisSet,
-        machine_coordinates: bool,
-    ) -> AxisSet {
-        let mut apart = AxisSet::default();
-        for axis in self.machine.axis_set.iter() {
-            let frame = &self.position.frame;
-            let moves_along = !machine_coordinates
-                && !named.contains(axis)
-                && named.iter().any(|by| frame.depends(axis, by));
-            if (absolute.contains(axis) || moves_along) && self.places(axis, machine_coordinates) {
-                apart.insert(axis);
-            }
-        }
-        apart
-    }
-
-    /// Axes whose places do not rest on what coordinates of the program rest on.
-    pub(super) fn apart_from_program(&self) -> AxisSet {
-        let mut apart = AxisSet::default();
-        for axis in self.machine.axis_set.iter() {
-            if !self.position.rests_on(axis, self.program_datum(axis)) {
-                apart.insert(axis);
-            }
-        }
-        apart
-    }
-
-    /// G92 and its like: the coordinates of an axis are counted from where it stands.
-    pub(super) fn set_coordinate(&mut self, axis: usize, value: f64) {
-        let offsets = self.offsets_datum(axis);
-        self.position.datums.set_here(axis, offsets);
-        self.position.set_offset(axis, value);
+    /// What the point of G28 or G30 rests on that the program has stored for an axis.
+    pub(super) fn stored(&self, point: u16, axis: usize) -> Option<Datum> {
+        let points = self.stored.get(usize::from(point).checked_sub(1)?)?;
+        points[axis]
     }
 }

@@ -87,6 +87,7 @@ impl Control<'_> {
             end: *end,
             moving: *moving,
             unknown_start: AxisSet::default(),
+            assumed_start: AxisSet::default(),
             arc: None,
             length_mm: way.0,
             feed_mm_s,

@@ -19,6 +19,7 @@ mod control;
 mod cycle;
 mod data_setting;
 mod datum;
+mod datum_words;
 mod dialect;
 mod fast_path;
 mod execute;

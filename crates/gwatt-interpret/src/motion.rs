@@ -40,6 +40,16 @@ impl Control<'_> {
                 GCode::Pocket(clockwise) => return self.circular_pocket(clockwise, span, run),
                 GCode::LatheCycle(number) => return self.lathe_cycle(number, span, run),
                 GCode::SetOffset => return self.set_offset(span, run),
+                GCode::ClearOffset { .. }
+                    if run.words.has_axes() && !self.rules.places_in_parameters =>
+                {
+                    let message = "G92.1 with axes presets the coordinate system, which is not \
+                                   followed";
+                    run.report
+                        .error("unsupported-code", message, span)
+                        .help("write it without axes, or select the work offset again");
+                    return;
+                }
                 GCode::ClearOffset { forget } => self.position.clear_offset(forget),
                 GCode::RestoreOffset => self.restore_offset(span, run),
                 GCode::SaveReference => self.save_reference(number, span, run),
@@ -99,6 +109,7 @@ impl Control<'_> {
             end: self.position.at,
             moving: AxisSet::default(),
             unknown_start: AxisSet::default(),
+            assumed_start: AxisSet::default(),
             arc: None,
             length_mm: 0.0,
             feed_mm_s: f64::INFINITY,
@@ -253,7 +264,13 @@ impl Control<'_> {
                 moving.insert(axis);
             }
         }
-        moving.0 &= !unknown_start.0;
+        // What rests on an offset that nobody has given is assumed, not unknown.
+        let assumed_start = if self.rules.relative_places {
+            AxisSet::default()
+        } else {
+            AxisSet(unknown_start.0 & !self.position.unknown.0)
+        };
+        moving.0 &= !unknown_start.0 | assumed_start.0;
         if let Some(arc) = &arc {
             moving.insert(arc.plane[0]);
             moving.insert(arc.plane[1]);
@@ -301,6 +318,7 @@ impl Control<'_> {
             end: *end,
             moving,
             unknown_start,
+            assumed_start,
             arc,
             length_mm,
             feed_mm_s,

@@ -81,9 +81,12 @@ impl Offsets {
         let mut set = AxisSet::default();
         linear.for_each(|axis| set.insert(axis));
         let metric = machine.controller.language.metric;
+        let stored = rules_of(&machine.controller.language).places_in_parameters;
+        // LinuxCNC and grbl keep all of them there; what is missing is 0.
+        let all_known = stored && parameters.is_some();
         let mut offsets = Self {
             stored: Box::new([0.0; COUNT]),
-            has_value: [parameters.is_some(); COUNT],
+            has_value: [all_known; COUNT],
             further: BTreeMap::new(),
             native_mm: if metric { 1.0 } else { MM_PER_INCH },
             linear: set,
@@ -95,7 +98,7 @@ impl Offsets {
             local: [0.0; AXES],
             tool: [0.0; AXES],
             programmed: Affine::IDENTITY,
-            known: parameters.is_some(),
+            known: all_known,
             given: 0,
         };
         offsets.set_stored(SYSTEM, 1.0);
@@ -109,7 +112,6 @@ impl Offsets {
         for (number, value) in parameters.into_iter().flat_map(ParameterFile::iter) {
             offsets.set_stored(number, value);
         }
-        let stored = rules_of(&machine.controller.language).places_in_parameters;
         for (number, value) in reading.given.iter().filter_map(GivenVariable::number) {
             if stored {
                 offsets.set_stored(number, value);
@@ -239,12 +241,31 @@ impl Offsets {
     /// Whether the offset of the system in force is known, not taken as 0. Of further ones
     /// nobody says anything.
     pub(super) fn is_known(&self) -> bool {
-        !self.is_further() && (self.known || self.given & 1 << self.system != 0)
+        let first = first_of(self.system.min(SYSTEMS));
+        let has = |axis| self.known_from(first, axis).is_some();
+        !self.is_further()
+            && (self.known || self.given & 1 << self.system != 0 || (0..PARAMETER_AXES).any(has))
     }
 
     /// The same for one axis, whose offset the program may have set.
     pub(super) fn is_known_of(&self, axis: usize) -> bool {
-        !self.is_further() && self.known_from(first_of(self.system), axis).is_some()
+        self.is_origin_known(self.system, axis)
+    }
+
+    /// Whether the origin of a system is known along an axis.
+    pub(super) fn is_origin_known(&self, system: u16, axis: usize) -> bool {
+        let stored = (1..=SYSTEMS).contains(&system);
+        stored && self.known_from(first_of(system), axis).is_some()
+    }
+
+    /// The origin of a system along an axis rests on what is not known.
+    pub(super) fn forget_origin(&mut self, system: u16, axis: usize) {
+        if (1..=SYSTEMS).contains(&system) && axis < PARAMETER_AXES {
+            let index = (first_of(system) - FIRST) as usize + axis;
+            if let Some(has_value) = self.has_value.get_mut(index) {
+                *has_value = false;
+            }
+        }
     }
 
     /// Whether a further system is in force: G54.1, G154.

@@ -95,7 +95,8 @@ impl Control<'_> {
             let datum = match self.known_reference(point, axis) {
                 Some(place_mm) => {
                     place[axis] = place_mm;
-                    self.machine_datum(axis)
+                    let stored = self.position.datums.stored(point, axis);
+                    stored.unwrap_or_else(|| self.machine_datum(axis))
                 }
                 None => {
                     note_machine_zero(span, run);
@@ -165,6 +166,10 @@ impl Control<'_> {
             return;
         }
         let at = self.position.at;
+        for axis in self.machine.axis_set.iter() {
+            let point = usize::from(number == 301) + 1;
+            self.position.datums.store(point, axis);
+        }
         self.position.change(|offsets| {
             for (axis, value) in at.into_iter().enumerate() {
                 offsets.store_axis(first, axis, value);

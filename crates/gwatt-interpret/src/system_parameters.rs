@@ -84,6 +84,7 @@ impl Control<'_> {
 
     /// Place of an axis in machine coordinates, in units of the program.
     pub(super) fn place_in_machine(&self, axis: usize) -> Option<f64> {
+        // Offsets that nobody has given are 0 here, as they are in all machine coordinates.
         if self.position.unknown.contains(axis) {
             return None;
         }
@@ -94,7 +95,7 @@ impl Control<'_> {
     pub(super) fn place(&self, axis: usize) -> Option<f64> {
         let frame = &self.position.frame;
         let unknown = self.position.unknown;
-        if unknown.iter().any(|by| frame.depends(by, axis)) {
+        if unknown.iter().any(|by| frame.depends(by, axis)) || self.coordinate_unknown(axis) {
             return None;
         }
         Some(self.in_unit(axis, *self.position.program().get(axis)?))

@@ -5,7 +5,6 @@
 
 use super::control::{Control, Run};
 use super::special::Turning;
-use gwatt_machine::AxisSet;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_motion::MoveKind;
 
@@ -22,7 +21,6 @@ impl Control<'_> {
         let Some(unknown) = self.targets(run, false, &mut end) else {
             return;
         };
-        let unknown = AxisSet(unknown.0 & self.position.unknown.0);
         let Some(pitch) = run.words.take(b'K') else {
             let whole = run.whole();
             run.report

@@ -43,6 +43,8 @@ pub(super) struct Tools {
     /// Whether the program, or who runs it, has said which these are.
     selected_told: bool,
     loaded_told: bool,
+    /// How often a tool was selected or changed.
+    pub(super) changes: u32,
     /// The tool or offset whose length in force was taken as 0, since nothing is known of it.
     pub(super) guessed: Option<u32>,
     /// The number of G43 in force (Fanuc: H alone changes it).
@@ -74,6 +76,7 @@ impl Tools {
 
     /// T.
     fn select(&mut self, number: u32) {
+        self.changes = self.changes.saturating_add(1);
         self.selected = number;
         self.selected_told = true;
     }

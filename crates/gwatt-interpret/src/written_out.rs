@@ -94,7 +94,9 @@ impl Interpreter<'_> {
                  G54 to G59 there",
             );
         }
-        (!control.position.offsets().is_known()).then_some(
+        let offsets = control.position.offsets();
+        let known = moving.iter().all(|axis| offsets.is_known_of(axis));
+        (!known).then_some(
             "the work offset is not known: give it in [offsets] of the machine file, or with \
              --parameters",
         )

@@ -117,8 +117,13 @@ fn rapid_knob(machine: &Machine, permit: &Permit) -> Option<usize> {
 
 /// Whether the axes stand for a knob where its word is put back right away: a feed costs less.
 fn costs_stops(machine: &Machine, permit: &Permit, knob: usize) -> bool {
+    permit.apart && is_share(machine, knob)
+}
+
+/// Whether a knob sets a share of the speed of all moves.
+fn is_share(machine: &Machine, knob: usize) -> bool {
     let knob = machine.controller.knobs.get(knob);
-    permit.apart && knob.is_some_and(|knob| knob.target == KnobTarget::SpeedShare)
+    knob.is_some_and(|knob| knob.target == KnobTarget::SpeedShare)
 }
 
 /// The knob for the largest speed that acts on a move, where it can be put back.
@@ -207,7 +212,9 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
         };
     }
     let as_feed = || rapid_as_feed(machine, how, mv, permit);
-    let speed = match rapid_knob(machine, permit) {
+    // A share of the speed acts late where it is not known how far the way is.
+    let in_time = |knob: &usize| mv.unknown_start.is_empty() || !is_share(machine, *knob);
+    let speed = match rapid_knob(machine, permit).filter(in_time) {
         Some(knob) if !(costs_stops(machine, permit, knob) && as_feed()) => {
             Some(SpeedLever::RapidPercent(knob))
         }

@@ -21,7 +21,7 @@ mod queue;
 mod response;
 mod servo;
 
-pub use axis::{ALL_AXES, AXES, Axis, AxisId, AxisKind, AxisSet, AxisValues};
+pub use axis::{ALL_AXES, AXES, Axis, AxisId, AxisKind, AxisSet, AxisValues, FURTHER_REFERENCES};
 pub use builtin::builtin_controller;
 pub use config::{Loaded, controller_schema, schema};
 pub use controller::*;

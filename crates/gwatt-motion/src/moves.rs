@@ -115,6 +115,9 @@ pub struct Move {
     /// Axes that are commanded but whose start is not known (`--start unknown`);
     /// their values in `start` mean nothing.
     pub unknown_start: AxisSet,
+    /// Of these, the axes of which it is assumed where they stand: `start` has their places,
+    /// and they are among `moving` where they would move from there.
+    pub assumed_start: AxisSet,
     /// Geometry of an arc.
     pub arc: Option<Arc>,
     /// Path length in mm, or in degrees where only rotary axes move: the length

@@ -33,7 +33,7 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before, machine: &Machine) ->
     let mut moving = AxisSet::default();
     for step in &*line.steps {
         if let Step::Move(mv) = step {
-            moving.0 |= mv.moving.0;
+            moving.0 |= mv.moving.0 | mv.unknown_start.0;
         }
     }
     if moving.is_empty() {

@@ -97,6 +97,11 @@ impl Reading<'_, '_> {
         if !cursor.assigns() {
             return Ok(false);
         }
+        if matches!(&name, Name::Local(name) if name.as_str() == "HP") {
+            let message = "HP, a home position (G20, G21), which is not followed";
+            let help = "write the way there as a rapid";
+            return Err(self.cursor.fault("unsupported-word", message, help, start));
+        }
         self.cursor = cursor;
         let (text, local) = match name {
             Name::Common(name) => (name, false),

@@ -398,10 +398,13 @@ impl Control<'_> {
     /// G92.3: what G92 has stored, in this program or before.
     pub(crate) fn restore_offset(&mut self, span: Span, run: &mut Run<'_, '_>) {
         let offsets = self.position.offsets();
-        if (0..AXES).any(|axis| self.machine.axes[axis].is_some() && !offsets.is_g92_told(axis)) {
-            run.report.note_once("no-offsets", NO_OFFSETS, span);
-        }
+        let unknown =
+            (0..AXES).any(|axis| self.machine.axes[axis].is_some() && !offsets.is_g92_told(axis));
         self.position.change(Offsets::restore_g92);
+        if unknown {
+            run.report.note_once("no-offsets", NO_OFFSETS, span);
+            self.set_all_unknown();
+        }
     }
 
     /// Fanuc forbids new coordinate systems while the program is turned.

@@ -21,8 +21,6 @@ impl Control<'_> {
         mut target: Target,
         run: &mut Run<'_, '_>,
     ) {
-        // An arc fits only the place from which it was written.
-        target.unknown.0 &= self.position.unknown.0;
         if !self.siemens_arc_fits(state, &target, run) {
             return;
         }

@@ -118,6 +118,13 @@ impl Control<'_> {
         self.feed_mode(run);
         self.siemens_feed(state, run);
         self.siemens_speed(state, run);
+        if let Some(word) = run
+            .words
+            .word(b'D', run.block)
+            .filter(|word| word.value >= 0.0)
+        {
+            self.choice.number = Some(word.value as u32);
+        }
         self.m_words(run);
         self.spindle.unknown_up_to_rpm = state.spindle_limit.filter(|_| state.surface_speed);
         self.tell_spindle(run);
@@ -319,13 +326,22 @@ impl Control<'_> {
                     });
                     run.act(ActionKind::PathMode, f64::from(number) / 10.0);
                 }
-                GCode::Siemens(Code::Suppress) => state.extra.machine_coordinates = true,
+                GCode::Siemens(Code::Suppress) => {
+                    state.extra.machine_coordinates = true;
+                    // In this block alone.
+                    state.active = true;
+                }
                 GCode::Siemens(Code::Limits) => {
                     // Limits of the work area or of the spindle: data.
                     run.words.unused &= !super::super::letters::AXIS_LETTERS;
                     run.words.take(b'S');
                 }
-                GCode::WorkOffset(offset) if offset > 1 => {
+                GCode::WorkOffset(offset) => {
+                    // G500, which may have an offset of its own, is none of them.
+                    self.position.datums.own_system = Some(u16::from(offset) + 1);
+                    if offset < 2 {
+                        continue;
+                    }
                     let message = "without a parameter file all work offsets are taken as 0";
                     run.report.note_once("no-offsets", message, span);
                 }

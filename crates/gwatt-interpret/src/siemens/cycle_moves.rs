@@ -249,9 +249,10 @@ impl Control<'_> {
         run: &mut Run<'_, '_>,
     ) {
         self.plunge(state, MoveKind::Rapid, &levels, levels.safe, run);
-        self.plunge_at(state, call.value(7), &levels, levels.depth, run);
+        let [feed_in, feed_out] = [7, 8].map(|place| call.value(place).filter(|_| call.feeds));
+        self.plunge_at(state, feed_in, &levels, levels.depth, run);
         self.cycle_wait(call.value(6), run);
-        self.plunge_at(state, call.value(8), &levels, levels.safe, run);
+        self.plunge_at(state, feed_out, &levels, levels.safe, run);
         self.plunge(state, MoveKind::Rapid, &levels, levels.retract, run);
     }
 

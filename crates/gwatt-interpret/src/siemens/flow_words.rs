@@ -279,6 +279,17 @@ impl Reading<'_, '_, '_> {
         let times = self.times()?.unwrap_or(1);
         match what {
             Called::Program { name, arguments } => {
+                let depth = self.state.scopes.len();
+                let modal = self.state.modal_call.as_ref();
+                let sets = |modal: &ModalCall| {
+                    modal.depth == depth && matches!(modal.what, Called::Cycle(_))
+                };
+                if modal.is_some_and(sets) {
+                    let message = "a subprogram while MCALL has set a cycle: whether its moves call \
+                                   it is not known";
+                    let help = "write MCALL before it, which ends that";
+                    return Err(self.cursor.fault("flow", message, help, start));
+                }
                 self.state.pending = arguments;
                 let again = false;
                 Ok(Go::Call { name, times, again })
@@ -306,7 +317,12 @@ impl Reading<'_, '_, '_> {
                 });
             }
             let span = self.cursor.span(start);
-            return Ok(Called::Cycle(cycle::Call { kind, values, span }));
+            return Ok(Called::Cycle(cycle::Call {
+                kind,
+                values,
+                feeds: name == "CYCLE85",
+                span,
+            }));
         }
         let name = name.to_owned();
         Ok(Called::Program { name, arguments })

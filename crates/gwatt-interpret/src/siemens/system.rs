@@ -38,7 +38,9 @@ impl Reading<'_, '_, '_> {
         self.control.machine.axes.get(axis)?.as_ref()?;
         let at = &self.control.position.at;
         let needed = if axis < 3 { 0b111 } else { 1 << axis };
-        if self.control.position.unknown.0 & needed != 0 {
+        // Offsets that nobody has given are 0 here, as they are in all machine coordinates.
+        let apart = name != "$AA_IM" && self.control.coordinate_unknown(axis);
+        if self.control.position.unknown.0 & needed != 0 || apart {
             return None;
         }
         let mm = match name {

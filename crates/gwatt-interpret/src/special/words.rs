@@ -161,7 +161,7 @@ impl Control<'_> {
     pub(crate) fn part(&mut self, run: &mut Run<'_, '_>, kind: MoveKind, end: &AxisValues) {
         let mut apart = AxisSet::default();
         for axis in self.machine.axis_set.iter() {
-            if end[axis] != self.position.at[axis] && self.places(axis, false) {
+            if end[axis] != self.position.at[axis] && self.places_in_cycle(axis) {
                 apart.insert(axis);
             }
         }

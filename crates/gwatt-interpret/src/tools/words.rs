@@ -55,6 +55,7 @@ impl Control<'_> {
     /// M6, and M61 Q of `LinuxCNC`, which only says what is loaded.
     pub(crate) fn load_tool(&mut self, number: u16, span: Span, run: &mut Run<'_, '_>) {
         self.forget_way_back();
+        self.tools.changes = self.tools.changes.saturating_add(1);
         if number == 60 {
             self.tools.loaded = self.tools.selected;
             self.tools.loaded_told = self.tools.selected_told;

@@ -54,7 +54,7 @@ impl Control<'_> {
         let Some((approach, rest)) = pieces.split_first() else {
             return;
         };
-        let (rest, way_out) = way_out(approach, rest, along);
+        let (rest, way_out) = way_out(approach, rest, deep);
         let Some(last) = rest.last() else { return };
         if !way_out.is_empty() {
             run.facts.guessed = Some(WAY_OUT);
@@ -208,7 +208,8 @@ const WAY_OUT: &str = "its contour ends with a rapid back along the cut";
 
 /// The pieces of a contour, and the rapids at its end that lead back along the cut: a last
 /// block such as `G0 G40 Z2.`, which ends the compensation of the nose radius as well.
-fn way_out<'p>(approach: &Piece, rest: &'p [Piece], along: usize) -> (&'p [Piece], &'p [Piece]) {
+fn way_out<'p>(approach: &Piece, rest: &'p [Piece], deep: usize) -> (&'p [Piece], &'p [Piece]) {
+    let along = X + Z - deep;
     let contour = rest
         .iter()
         .rposition(|piece| piece.kind != MoveKind::Rapid)
@@ -218,7 +219,9 @@ fn way_out<'p>(approach: &Piece, rest: &'p [Piece], along: usize) -> (&'p [Piece
         return (rest, &[]);
     };
     let forward = (last.end[along] - approach.end[along]).signum();
-    if after.iter().all(|piece| piece.goes(along, forward)) {
+    let outward = (last.end[deep] - approach.end[deep]).signum();
+    let leads_out = |piece: &Piece| piece.goes(deep, outward);
+    if after.iter().all(|piece| piece.goes(along, forward)) || !after.iter().all(leads_out) {
         return (rest, &[]);
     }
     (contour, after)
