@@ -11,7 +11,7 @@ use super::error::{IdentifyError, Outcome};
 use super::figure::Figure;
 use super::leaky_integrator::Leaky;
 use super::measured_noise::Noise;
-use super::methods::{Modelled, by_arx, by_response, by_search, by_subspace};
+use super::methods::{Estimator, Modelled, estimator};
 use super::missed::{missed_energy, peak_of_colour};
 use super::noise::Whiteness;
 use super::output_error::residuals;
@@ -156,7 +156,7 @@ const BEYOND: f64 = 1.05;
 /// What keeps the recording from being used, or a model from being found.
 pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
     let mut prepared = prepare(recording, choice)?;
-    let may_rub = choice.method == Method::Iv && prepared.is_force;
+    let may_rub = estimator(choice.method).has_friction() && prepared.is_force;
     if let Some(rubbing) = may_rub.then(|| Rubbing::of(recording)).flatten() {
         let force = prepared.input.clone();
         rubbing.take_off(&mut prepared.input);
@@ -181,11 +181,11 @@ fn is_clear(figure: &Figure) -> bool {
 }
 
 fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcome<Flexible> {
-    let mut choice = choice.clone();
-    let searches = matches!(choice.method, Method::Iv | Method::Frequency);
+    let method = estimator(choice.method);
+    let mut given = choice.given;
     let whole_s = libm::ceil(prepared.early_s / prepared.period_s) * prepared.period_s;
-    let given = choice.given.delay_s.map(|delay| delay + prepared.early_s);
-    choice.given.delay_s = given.or((!searches).then_some(whole_s));
+    let late_s = given.delay_s.map(|delay| delay + prepared.early_s);
+    given.delay_s = late_s.or((!method.finds_delay()).then_some(whole_s));
     let undisturbed = match &prepared.excitation {
         Some(r) => Some(arx::undisturbed(r, &prepared.input).ok_or_else(|| {
             IdentifyError::new(
@@ -208,21 +208,15 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
         every: 1,
         leak: 0.0,
     };
-    let find = |choice: &Choice| match choice.method {
-        Method::Iv => by_search(&data, prepared, choice),
-        Method::Frequency => by_response(&data, prepared, choice),
-        Method::Arx => by_arx(&data, prepared, choice),
-        Method::Subspace => by_subspace(&data, prepared, choice),
-    };
-    let found = find(&choice).ok_or_else(|| {
+    let found = method.estimate(&data, prepared, given);
+    let mut found = found.ok_or_else(|| {
         IdentifyError::new(
             "no stable model fits the recording",
             "check units and signs of the columns, excite longer, or give --order",
         )
     })?;
-    let mut found = found;
     let left = Left::of(&found, &data);
-    left.widen(&mut found, choice.method);
+    left.widen(&mut found, method);
     let friction = found.estimate.friction.clone();
     let mut described = describe(found, &data, prepared, &left)?;
     described.speed_is_summed = rubbing.terms.contains(&Term::Drift);
@@ -346,12 +340,12 @@ impl Left {
         }
     }
 
-    /// Widens standard errors by what is more than white noise; those by a frequency
-    /// response know the colour of the noise.
-    fn widen(&self, found: &mut Modelled, method: Method) {
-        let colour = match method {
-            Method::Frequency => 1.0,
-            _ => peak_of_colour(&self.white),
+    /// Widens standard errors by what is more than white noise.
+    fn widen(&self, found: &mut Modelled, method: &dyn Estimator) {
+        let colour = if method.knows_colour() {
+            1.0
+        } else {
+            peak_of_colour(&self.white)
         };
         let wider = colour + self.missed_energy / (AT_MOST * AT_MOST);
         found.estimate.covariance *= wider;
