@@ -47,6 +47,8 @@ pub struct Flexible {
     pub viscous: Option<Figure>,
     /// Coulomb friction; absent where the recording shows none.
     pub coulomb: Option<Figure>,
+    /// Whether there is friction, by errors that may be too small to show.
+    pub(crate) rubs: bool,
     /// Whether the speed that friction goes with is a sum of accelerations.
     pub speed_is_summed: bool,
     /// Delay; from a command that is held, its half period of holding too.
@@ -85,6 +87,8 @@ pub struct Flexible {
     pub has_errors: bool,
     /// Whether the sign of the inertia is known, by errors that may be too small to show.
     pub(crate) sign_is_sure: bool,
+    /// Up to where the recording shows the axis, rad/s.
+    pub(crate) shown_rad_s: f64,
     /// How far the delay is in doubt as long as the zeros stay what they are, s.
     pub(crate) delay_doubt_s: f64,
     /// What was measured.
@@ -162,22 +166,13 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
         rubbing.take_off(&mut prepared.input);
         let found = identified(&prepared, choice, &rubbing);
         if let Ok(found) = found
-            && [found.viscous, found.coulomb]
-                .iter()
-                .flatten()
-                .any(is_clear)
+            && found.rubs
         {
             return Ok(found);
         }
         prepared.input = force;
     }
     identified(&prepared, choice, &Rubbing::default())
-}
-
-/// Whether there is something for sure.
-fn is_clear(figure: &Figure) -> bool {
-    const CLEAR: f64 = 3.0;
-    figure.value > CLEAR * figure.std
 }
 
 fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcome<Flexible> {
@@ -215,44 +210,21 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
             "check units and signs of the columns, excite longer, or give --order",
         )
     })?;
+    // What the model misses widens errors, and says nothing of whether there is friction.
+    let rubs = rubbing.is_clear(&found.estimate.friction);
     let left = Left::of(&found, &data);
     left.widen(&mut found, method);
-    let friction = found.estimate.friction.clone();
+    let [viscous, coulomb] = rubbing.figures(&found.estimate.friction);
     let mut described = describe(found, &data, prepared, &left)?;
-    described.speed_is_summed = rubbing.terms.contains(&Term::Drift);
-    let figures = friction.iter().zip(&rubbing.about).zip(&rubbing.terms);
-    for ((found, about), term) in figures {
-        let figure = Some(Figure {
-            value: about + found.value,
-            std: found.std,
-        });
-        match term {
-            Term::Viscous => described.viscous = figure,
-            Term::Coulomb => described.coulomb = figure,
-            Term::Drift => {}
-        }
-    }
-    if described.speed_is_summed {
-        // The sum misses what stops the axis between samples.
-        let widen = |figure: &mut Option<Figure>, share: f64| {
-            if let Some(figure) = figure {
-                figure.std = libm::hypot(figure.std, share * figure.value);
-            }
-        };
-        widen(&mut described.viscous, SUMMED_VISCOUS);
-        widen(&mut described.coulomb, SUMMED_COULOMB);
-    }
+    described.rubs = rubs;
+    described.speed_is_summed = rubbing.is_summed();
+    (described.viscous, described.coulomb) = (viscous, coulomb);
     // A force is held while the friction changes: which speed of a sample it had is open.
     if let (Some(inertia), Some(viscous)) = (&mut described.inertia, described.viscous) {
         inertia.std = libm::hypot(inertia.std, viscous.value * prepared.period_s);
     }
     Ok(described)
 }
-
-/// Friction of a speed that is a sum of accelerations, as a share: what instants of sticking
-/// made of it in simulations.
-const SUMMED_VISCOUS: f64 = 0.04;
-const SUMMED_COULOMB: f64 = 0.12;
 
 /// Norm of what is left by norm of the output, means taken off.
 fn share(data: &Data<'_>, left: &[f64]) -> f64 {
@@ -406,12 +378,14 @@ fn describe(
         poles,
         viscous: None,
         coulomb: None,
+        rubs: false,
         speed_is_summed: false,
         delay_s: Figure {
             value: transfer.delay_s,
             std: libm::hypot(delay_std, stands_for_delay_s(&transfer, data.from_command)),
         },
         sign_is_sure,
+        shown_rad_s: bands.0,
         delay_doubt_s: delay_std,
         rel_error: left.rel_error,
         whiteness: Whiteness::of(&left.white, LAGS),
