@@ -28,8 +28,8 @@ import scipy.signal
 
 # Inertia of the motors of HSM150 in the data's own variable J, kg m2.
 HSM150_CATALOGUE = 1.2e-4
-# LinA of camber-control: torque constant in N m/A, and rad of the motor per m of the slide
-# (24 windings of the encoder's count, model_setup.m).
+# LinA of camber-control: torque constant in N m/A, and rad of the motor per m of the slide, by
+# its model_setup.m.
 LIN_TORQUE_CONSTANT = 42.9e-3
 LIN_RAD_M = 1000 * 2 * numpy.pi * 85.58 / 24
 
