@@ -11,7 +11,7 @@ use super::error::{IdentifyError, Outcome};
 use super::figure::Figure;
 use super::leaky_integrator::Leaky;
 use super::measured_noise::Noise;
-use super::methods::{Modelled, by_arx, by_response, by_search, by_subspace};
+use super::methods::{Estimator, Modelled, estimator};
 use super::missed::{missed_energy, peak_of_colour};
 use super::noise::Whiteness;
 use super::output_error::residuals;
@@ -47,6 +47,8 @@ pub struct Flexible {
     pub viscous: Option<Figure>,
     /// Coulomb friction; absent where the recording shows none.
     pub coulomb: Option<Figure>,
+    /// Whether there is friction, by errors that may be too small to show.
+    pub(crate) rubs: bool,
     /// Whether the speed that friction goes with is a sum of accelerations.
     pub speed_is_summed: bool,
     /// Delay; from a command that is held, its half period of holding too.
@@ -85,6 +87,8 @@ pub struct Flexible {
     pub has_errors: bool,
     /// Whether the sign of the inertia is known, by errors that may be too small to show.
     pub(crate) sign_is_sure: bool,
+    /// Up to where the recording shows the axis, rad/s.
+    pub(crate) shown_rad_s: f64,
     /// How far the delay is in doubt as long as the zeros stay what they are, s.
     pub(crate) delay_doubt_s: f64,
     /// What was measured.
@@ -156,16 +160,13 @@ const BEYOND: f64 = 1.05;
 /// What keeps the recording from being used, or a model from being found.
 pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
     let mut prepared = prepare(recording, choice)?;
-    let may_rub = choice.method == Method::Iv && prepared.is_force;
+    let may_rub = estimator(choice.method).has_friction() && prepared.is_force;
     if let Some(rubbing) = may_rub.then(|| Rubbing::of(recording)).flatten() {
         let force = prepared.input.clone();
         rubbing.take_off(&mut prepared.input);
         let found = identified(&prepared, choice, &rubbing);
         if let Ok(found) = found
-            && [found.viscous, found.coulomb]
-                .iter()
-                .flatten()
-                .any(is_clear)
+            && found.rubs
         {
             return Ok(found);
         }
@@ -174,18 +175,12 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
     identified(&prepared, choice, &Rubbing::default())
 }
 
-/// Whether there is something for sure.
-fn is_clear(figure: &Figure) -> bool {
-    const CLEAR: f64 = 3.0;
-    figure.value > CLEAR * figure.std
-}
-
 fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcome<Flexible> {
-    let mut choice = choice.clone();
-    let searches = matches!(choice.method, Method::Iv | Method::Frequency);
+    let method = estimator(choice.method);
+    let mut given = choice.given;
     let whole_s = libm::ceil(prepared.early_s / prepared.period_s) * prepared.period_s;
-    let given = choice.given.delay_s.map(|delay| delay + prepared.early_s);
-    choice.given.delay_s = given.or((!searches).then_some(whole_s));
+    let late_s = given.delay_s.map(|delay| delay + prepared.early_s);
+    given.delay_s = late_s.or((!method.finds_delay()).then_some(whole_s));
     let undisturbed = match &prepared.excitation {
         Some(r) => Some(arx::undisturbed(r, &prepared.input).ok_or_else(|| {
             IdentifyError::new(
@@ -208,57 +203,28 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
         every: 1,
         leak: 0.0,
     };
-    let find = |choice: &Choice| match choice.method {
-        Method::Iv => by_search(&data, prepared, choice),
-        Method::Frequency => by_response(&data, prepared, choice),
-        Method::Arx => by_arx(&data, prepared, choice),
-        Method::Subspace => by_subspace(&data, prepared, choice),
-    };
-    let found = find(&choice).ok_or_else(|| {
+    let found = method.estimate(&data, prepared, given);
+    let mut found = found.ok_or_else(|| {
         IdentifyError::new(
             "no stable model fits the recording",
             "check units and signs of the columns, excite longer, or give --order",
         )
     })?;
-    let mut found = found;
+    // What the model misses widens errors, and says nothing of whether there is friction.
+    let rubs = rubbing.is_clear(&found.estimate.friction);
     let left = Left::of(&found, &data);
-    left.widen(&mut found, choice.method);
-    let friction = found.estimate.friction.clone();
+    left.widen(&mut found, method);
+    let [viscous, coulomb] = rubbing.figures(&found.estimate.friction);
     let mut described = describe(found, &data, prepared, &left)?;
-    described.speed_is_summed = rubbing.terms.contains(&Term::Drift);
-    let figures = friction.iter().zip(&rubbing.about).zip(&rubbing.terms);
-    for ((found, about), term) in figures {
-        let figure = Some(Figure {
-            value: about + found.value,
-            std: found.std,
-        });
-        match term {
-            Term::Viscous => described.viscous = figure,
-            Term::Coulomb => described.coulomb = figure,
-            Term::Drift => {}
-        }
-    }
-    if described.speed_is_summed {
-        // The sum misses what stops the axis between samples.
-        let widen = |figure: &mut Option<Figure>, share: f64| {
-            if let Some(figure) = figure {
-                figure.std = libm::hypot(figure.std, share * figure.value);
-            }
-        };
-        widen(&mut described.viscous, SUMMED_VISCOUS);
-        widen(&mut described.coulomb, SUMMED_COULOMB);
-    }
+    described.rubs = rubs;
+    described.speed_is_summed = rubbing.is_summed();
+    (described.viscous, described.coulomb) = (viscous, coulomb);
     // A force is held while the friction changes: which speed of a sample it had is open.
     if let (Some(inertia), Some(viscous)) = (&mut described.inertia, described.viscous) {
         inertia.std = libm::hypot(inertia.std, viscous.value * prepared.period_s);
     }
     Ok(described)
 }
-
-/// Friction of a speed that is a sum of accelerations, as a share: what instants of sticking
-/// made of it in simulations.
-const SUMMED_VISCOUS: f64 = 0.04;
-const SUMMED_COULOMB: f64 = 0.12;
 
 /// Norm of what is left by norm of the output, means taken off.
 fn share(data: &Data<'_>, left: &[f64]) -> f64 {
@@ -346,12 +312,12 @@ impl Left {
         }
     }
 
-    /// Widens standard errors by what is more than white noise; those by a frequency
-    /// response know the colour of the noise.
-    fn widen(&self, found: &mut Modelled, method: Method) {
-        let colour = match method {
-            Method::Frequency => 1.0,
-            _ => peak_of_colour(&self.white),
+    /// Widens standard errors by what is more than white noise.
+    fn widen(&self, found: &mut Modelled, method: &dyn Estimator) {
+        let colour = if method.knows_colour() {
+            1.0
+        } else {
+            peak_of_colour(&self.white)
         };
         let wider = colour + self.missed_energy / (AT_MOST * AT_MOST);
         found.estimate.covariance *= wider;
@@ -412,12 +378,14 @@ fn describe(
         poles,
         viscous: None,
         coulomb: None,
+        rubs: false,
         speed_is_summed: false,
         delay_s: Figure {
             value: transfer.delay_s,
             std: libm::hypot(delay_std, stands_for_delay_s(&transfer, data.from_command)),
         },
         sign_is_sure,
+        shown_rad_s: bands.0,
         delay_doubt_s: delay_std,
         rel_error: left.rel_error,
         whiteness: Whiteness::of(&left.white, LAGS),

@@ -235,8 +235,10 @@ pub fn flexible(axis: &Flexible) -> Judgement {
     if !axis.has_errors {
         return Judgement::NoErrors;
     }
+    // A mode that nothing excites is as uncertain as that, however long a recording is.
+    let excited = || roots().filter(|root| root.omega_rad_s.value < axis.shown_rad_s);
     let worst = |part: fn(&Root) -> Figure, limit: f64| {
-        roots()
+        excited()
             .map(|root| excess(part(root), limit))
             .fold(0.0, f64::max)
     };

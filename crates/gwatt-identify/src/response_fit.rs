@@ -56,6 +56,16 @@ impl ResponseFit {
     }
 }
 
+/// Weights by a variance that is the mean of so many values are off by chance: as the best fit
+/// is missed, figures scatter by `1/m` more, and by as much less than seems.
+fn doubt(values: usize) -> f64 {
+    if values > 0 {
+        1.0 + 2.0 / values as f64
+    } else {
+        1.0
+    }
+}
+
 /// Some frequencies with their responses and weights. Where there are fewer, the last
 /// one fills up, without any weight.
 #[derive(Debug, Clone, Default)]
@@ -70,6 +80,8 @@ struct Block {
 struct Points {
     blocks: Vec<Block>,
     count: usize,
+    /// By how much variances grow as weights are known from noise alone.
+    doubt: f64,
 }
 
 impl Points {
@@ -77,7 +89,9 @@ impl Points {
     fn some(response: &FrequencyResponse, period_s: f64, most: usize) -> Option<Self> {
         let all = Self::used(response, period_s)?;
         let every = all.len().div_ceil(most).max(1);
-        Some(Self::of(all.into_iter().step_by(every)))
+        let mut points = Self::of(all.into_iter().step_by(every));
+        points.doubt = doubt(response.noise_values);
+        Some(points)
     }
 
     fn new(response: &FrequencyResponse, period_s: f64) -> Option<Self> {
@@ -219,7 +233,7 @@ impl Points {
         }
         let count = parameters(&transfer, false).len();
         let solution = normal.solve().or_else(|| normal.solve_from(0, 1e-10))?;
-        let noise = normal.total / normal.rows.saturating_sub(count).max(1) as f64;
+        let noise = points.doubt * normal.total / normal.rows.saturating_sub(count).max(1) as f64;
         Some(ResponseFit {
             transfer,
             covariance: solution.inverse * noise,
@@ -349,6 +363,7 @@ mod tests {
         let response = FrequencyResponse {
             response: frequency_hz.iter().map(at).collect(),
             variance: vec![1e-4; 11],
+            noise_values: 0,
             coherence: vec![1.0; 11],
             power: vec![1.0; 11],
             periodic: true,

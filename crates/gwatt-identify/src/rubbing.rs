@@ -9,6 +9,7 @@
 
 use super::column::Quantity;
 use super::equations::Equations;
+use super::figure::Figure;
 use super::filter::{derivative, low_pass};
 use super::friction::{Solved, Terms, moves_one_way, solve};
 use super::recording::Recording;
@@ -21,6 +22,13 @@ const SMOOTH: f64 = 0.1;
 /// kept.
 const FOUND: f64 = 4.0;
 const KEPT: f64 = 3.0;
+
+/// The same of what is found next to a model.
+const CLEAR: f64 = 3.0;
+/// Friction of a speed that is a sum of accelerations, as a share: what instants of sticking
+/// made of it in simulations.
+const SUMMED_VISCOUS: f64 = 0.04;
+const SUMMED_COULOMB: f64 = 0.12;
 
 /// A term of friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -145,6 +153,38 @@ impl Rubbing {
                 *slot -= about * x;
             }
         }
+    }
+
+    /// Whether the speed is a sum of accelerations.
+    pub(super) fn is_summed(&self) -> bool {
+        self.terms.contains(&Term::Drift)
+    }
+
+    /// Viscous and Coulomb friction: what was taken off beforehand, and what was found of
+    /// each term besides.
+    pub(super) fn figures(&self, found: &[Figure]) -> [Option<Figure>; 2] {
+        let of = |wanted: Term, summed: f64| {
+            let at = self.terms.iter().position(|term| *term == wanted)?;
+            let found = found.get(at)?;
+            let value = self.about.get(at)? + found.value;
+            // A sum misses what stops the axis between samples.
+            let share = if self.is_summed() { summed } else { 0.0 };
+            Some(Figure {
+                value,
+                std: libm::hypot(found.std, share * value),
+            })
+        };
+        [
+            of(Term::Viscous, SUMMED_VISCOUS),
+            of(Term::Coulomb, SUMMED_COULOMB),
+        ]
+    }
+
+    /// Whether there is friction for sure.
+    pub(super) fn is_clear(&self, found: &[Figure]) -> bool {
+        let figures = self.figures(found);
+        let mut figures = figures.iter().flatten();
+        figures.any(|figure| figure.value > CLEAR * figure.std)
     }
 
     /// This much friction in another recording.

@@ -24,6 +24,9 @@ pub struct FrequencyResponse {
     pub power: Vec<f64>,
     /// True when whole periods of the excitation were averaged: nothing leaks.
     pub periodic: bool,
+    /// Complex values of which the variance at each frequency is the mean; 0 where that is
+    /// not known.
+    pub noise_values: usize,
 }
 
 impl FrequencyResponse {
@@ -276,78 +279,76 @@ fn over_periods(
     let bins = period / 2 + 1;
     let zero = C::new(0.0, 0.0);
     let (mut u, mut y) = (vec![zero; bins], vec![zero; bins]);
-    let mut power = vec![0.0; bins];
     let used = count - first;
     for index in first..count {
-        for ((sum, x), slot) in u.iter_mut().zip(part(input, index)).zip(&mut power) {
+        for (sum, x) in u.iter_mut().zip(part(input, index)) {
             *sum += x;
-            *slot += x.norm_sqr();
         }
         for (sum, x) in y.iter_mut().zip(part(output, index)) {
             *sum += x;
         }
     }
     let r = instrument.map(|r| part(r, first));
-    let strength: Vec<f64> = match &r {
-        Some(r) => r.iter().map(|x| x.norm()).collect(),
-        None => u.iter().map(|x| x.norm()).collect(),
-    };
-    let mut rest = vec![0.0; bins];
-    let mut total = vec![0.0; bins];
+    let strength: Vec<f64> = r.as_ref().unwrap_or(&u).iter().map(|x| x.norm()).collect();
+    let largest = strength.iter().copied().fold(0.0, f64::max);
+    let last = bins.saturating_sub(usize::from(period.is_multiple_of(2)));
+    // A line without excitation says nothing, of its noise neither.
+    let lines: Vec<(usize, C, C)> = (1..last)
+        .filter_map(|bin| {
+            let (u, y) = (*u.get(bin)?, *y.get(bin)?);
+            let is_excited = *strength.get(bin)? > 1e-4 * largest && u.norm_sqr() > 0.0;
+            is_excited.then_some((bin, u, y))
+        })
+        .collect();
+    let mut rest = vec![0.0; lines.len()];
+    let mut total = vec![0.0; lines.len()];
     for index in first..count {
         let (pu, py) = (part(input, index), part(output, index));
-        for (bin, (pu, py)) in pu.iter().zip(&py).enumerate() {
-            if let (Some(u), Some(y), Some(slot), Some(all)) = (
-                u.get(bin),
-                y.get(bin),
-                rest.get_mut(bin),
-                total.get_mut(bin),
-            ) {
+        let sums = rest.iter_mut().zip(&mut total);
+        for ((bin, u, y), (slot, all)) in lines.iter().zip(sums) {
+            if let (Some(pu), Some(py)) = (pu.get(*bin), py.get(*bin)) {
                 *slot += (py - y / u * pu).norm_sqr();
                 *all += py.norm_sqr();
             }
         }
     }
-    let largest = strength.iter().copied().fold(0.0, f64::max);
+    let free = used.saturating_sub(1).max(1);
+    // Noise changes little from line to line, and few periods show little of it at each.
+    let half = NOISE_VALUES.div_ceil(free);
+    let smooth = averaged(&rest, half);
     let mut out = FrequencyResponse {
         periodic: true,
+        noise_values: free * (2 * half + 1).min(lines.len()),
         ..FrequencyResponse::default()
     };
-    let k = used as f64;
-    // Noise changes little from line to line, and few periods show little of it at each.
-    let smooth = averaged(&rest, NOISE_VALUES.div_ceil(used.saturating_sub(1).max(1)));
-    for bin in 1..bins.saturating_sub(usize::from(period.is_multiple_of(2))) {
-        let (u, y) = (*u.get(bin)?, *y.get(bin)?);
-        if *strength.get(bin)? <= 1e-4 * largest || u.norm_sqr() == 0.0 {
-            continue;
-        }
-        let (left, total) = (*rest.get(bin)?, *total.get(bin)?);
+    let per_line = used as f64 / free as f64;
+    let noise = rest.iter().zip(&total).zip(&smooth);
+    for ((bin, u, y), ((left, total), smooth)) in lines.iter().zip(noise) {
         out.frequency_hz
-            .push(bin as f64 / (period as f64 * period_s));
+            .push(*bin as f64 / (period as f64 * period_s));
         out.response.push(y / u);
         out.coherence.push((1.0 - left / total).clamp(0.0, 1.0));
-        out.variance
-            .push(smooth.get(bin)? / (k - 1.0).max(1.0) * k / u.norm_sqr());
-        out.power.push(total);
+        out.variance.push(smooth * per_line / u.norm_sqr());
+        out.power.push(*total);
     }
     Some(out)
 }
 
-/// Means over so many neighbours on either side, fewer at the ends; the line at 0 is left
-/// out.
+/// Means over so many neighbours on either side; at the ends over as many, so that none of few
+/// values counts by chance.
 fn averaged(x: &[f64], half: usize) -> Vec<f64> {
     let mut sums = vec![0.0];
     let mut sum = 0.0;
-    for (index, x) in x.iter().enumerate() {
-        sum += if index == 0 { 0.0 } else { *x };
+    for x in x {
+        sum += x;
         sums.push(sum);
     }
+    let window = (2 * half + 1).min(x.len());
     (0..x.len())
         .map(|index| {
-            let half = half.min(index.saturating_sub(1)).min(x.len() - 1 - index);
-            let (from, to) = (index - half.min(index), index + half + 1);
-            match (sums.get(from), sums.get(to)) {
-                (Some(a), Some(b)) => (b - a) / (to - from) as f64,
+            let from = index.saturating_sub(half).min(x.len() - window);
+            match (sums.get(from), sums.get(from + window)) {
+                (Some(a), Some(b)) => (b - a) / window as f64,
                 _ => 0.0,
             }
         })
@@ -409,6 +410,46 @@ pub fn repetition(x: &[f64]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn means_at_the_ends_are_of_as_many() {
+        let x = [1.0, 2.0, 6.0, 3.0, 9.0];
+        assert_eq!(averaged(&x, 1), [3.0, 3.0, 11.0 / 3.0, 6.0, 6.0]);
+        assert_eq!(averaged(&x[..2], 3), [1.5, 1.5]);
+        assert!(averaged(&[], 3).is_empty());
+    }
+
+    /// Of a signal with every second line, repeated four times, the lines between say nothing:
+    /// neither of the response nor of its noise. Each variance is the mean of 34 values, two of
+    /// each of 17 lines.
+    #[test]
+    fn lines_that_are_left_out_say_nothing() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
+        };
+        let phases: Vec<f64> = (0..40).map(|_| 3.0 * random()).collect();
+        let input: Vec<f64> = (0..1600)
+            .map(|k| {
+                let turn = 2.0 * PI * f64::from(k) / 400.0;
+                let each = phases.iter().enumerate();
+                each.map(|(line, phase)| libm::cos((2 * line + 1) as f64 * turn + phase))
+                    .sum()
+            })
+            .collect();
+        let output: Vec<f64> = input.iter().map(|x| 2.0 * x + random()).collect();
+        let found = measure(&input, &output, None, 1e-3, None).unwrap();
+        assert!(found.periodic);
+        assert_eq!((found.frequency_hz.len(), found.noise_values), (40, 34));
+        // Noise from −1 to 1 has a variance of 1/3: 400/3 of a line, 1/3 of that as a mean of
+        // three periods, by the square of 200, half of the length.
+        let mean = found.variance.iter().sum::<f64>() / 40.0;
+        let expected = 400.0 / 9.0 / (200.0 * 200.0);
+        assert!((mean / expected - 1.0).abs() < 0.3, "{mean} {expected}");
+    }
 
     /// A signal explains itself and what a system makes of it; noise it does not.
     #[test]

@@ -23,41 +23,86 @@ enum At {
     Between(f64),
 }
 
+/// What a load does from one sample to the next.
+struct Step {
+    /// Its speed before and after.
+    before: f64,
+    after: f64,
+    /// Whether it goes with the motor all the time.
+    is_pushed: bool,
+    /// Whether it coasted, and was caught by an end of the play.
+    is_caught: bool,
+}
+
 impl Play {
     /// How the load's acceleration, and its friction by mass, differ from those that it had
     /// if it went with the motor. `None` where the speed is not known.
     pub fn differences(self, raw: &Raw) -> Option<[Vec<f64>; 2]> {
+        let mut out = [Vec::new(), Vec::new()];
+        let [accelerations, rubbing] = &mut out;
+        self.follow(raw, |step, v, a| {
+            let moves_apart = !step.is_pushed;
+            let differs = |difference: f64| if moves_apart { difference } else { 0.0 };
+            accelerations.push(differs((step.after - step.before) / raw.period_s - a));
+            rubbing.push(differs(self.friction(step.after) - self.friction(v)));
+        })?;
+        Some(out)
+    }
+
+    /// How fast an end of the play meets the load, as the root of the mean square, m/s
+    /// (rad/s).
+    pub fn catching_speed(self, raw: &Raw) -> Option<f64> {
+        let (mut squares, mut times) = (0.0, 0.0_f64);
+        self.follow(raw, |step, v, _| {
+            if step.is_caught {
+                let apart = v - self.coasted(step.before, raw.period_s);
+                squares += apart * apart;
+                times += 1.0;
+            }
+        })?;
+        Some((squares / times.max(1.0)).sqrt())
+    }
+
+    fn friction(self, v: f64) -> f64 {
+        self.coulomb * sign(v) + self.viscous * v
+    }
+
+    /// Calls `each` with what the load does, and the motor's speed and acceleration.
+    fn follow(self, raw: &Raw, mut each: impl FnMut(&Step, f64, f64)) -> Option<()> {
         let velocity = raw.velocity.as_ref()?;
-        let friction = |v: f64| self.coulomb * sign(v) + self.viscous * v;
         let t = raw.period_s;
         let mut load_speed = velocity.first().copied().unwrap_or_default();
         let mut at = At::End(if load_speed < 0.0 { -1.0 } else { 1.0 });
-        let mut out = [Vec::new(), Vec::new()];
-        let [accelerations, rubbing] = &mut out;
         for (v, a) in velocity.iter().zip(&raw.acceleration) {
-            let before = load_speed;
-            let apart = match at {
-                At::End(side) if (a + friction(*v)) * side >= 0.0 => {
+            let mut step = Step {
+                before: load_speed,
+                after: *v,
+                is_pushed: false,
+                is_caught: false,
+            };
+            let from = match at {
+                At::End(side) if (a + self.friction(*v)) * side >= 0.0 => {
+                    step.is_pushed = true;
                     load_speed = *v;
-                    accelerations.push(0.0);
-                    rubbing.push(0.0);
+                    each(&step, *v, *a);
                     continue;
                 }
                 At::End(side) => 0.5 * self.width * side,
                 At::Between(apart) => apart,
             };
             load_speed = self.coasted(load_speed, t);
-            let apart = apart + t * (v - load_speed);
+            let apart = from + t * (v - load_speed);
             at = if apart.abs() < 0.5 * self.width {
                 At::Between(apart)
             } else {
+                step.is_caught = true;
                 load_speed = *v;
                 At::End(sign(apart))
             };
-            accelerations.push((load_speed - before) / t - a);
-            rubbing.push(friction(load_speed) - friction(*v));
+            step.after = load_speed;
+            each(&step, *v, *a);
         }
-        Some(out)
+        Some(())
     }
 
     /// The speed of a load that coasts a while: friction stops it, and no more.
@@ -96,6 +141,8 @@ mod tests {
         for (found, expected) in accelerations.iter().zip([0.0, 0.0, 10.0, -10.0, 0.0, 0.0]) {
             assert!((found - expected).abs() < 1e-9, "{accelerations:?}");
         }
+        // The end that goes back with 1 m/s meets a load that goes on with 1 m/s.
+        assert!((play.catching_speed(&raw).unwrap() - 2.0).abs() < 1e-9);
         // Friction of 4 m/s² stops it in three steps; viscous friction of 2/s by a fifth.
         let braked = Play {
             coulomb: 4.0,

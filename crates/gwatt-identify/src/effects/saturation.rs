@@ -3,7 +3,7 @@
 use super::super::equations::{Equations, sign};
 use super::super::friction::{Friction, Solved, solve_best};
 use super::effect::Saturation;
-use super::search::left_share;
+use super::search::{left_share, share};
 
 /// Limits that are tried, as shares of the samples below them.
 const BELOW: [f64; 14] = [
@@ -13,6 +13,9 @@ const BELOW: [f64; 14] = [
 const BETTER: f64 = 0.6;
 /// Rounds of a finer search, each between half of the distance.
 const ROUNDS: usize = 5;
+/// What accelerates the axis is so many times as large as what is left, at least: a force that
+/// is cut off near friction is explained by friction alone, whatever it was.
+const ACCELERATES: f64 = 2.0;
 /// What is missing at the limit is so many standard errors, and such a share of the limit, at
 /// least: then the motion shows more than was recorded.
 const SURE: f64 = 4.0;
@@ -85,6 +88,14 @@ fn ends(x: &[f64]) -> (f64, f64) {
         })
 }
 
+/// Where a parabola through three values, the least in the middle, has its vertex: in steps
+/// from the middle.
+fn vertex([below, least, above]: [f64; 3]) -> Option<f64> {
+    let bend = below - 2.0 * least + above;
+    let by = 0.5 * (below - above) / bend;
+    (bend > 0.0 && by.abs() <= 1.0).then_some(by)
+}
+
 /// A limit above which the motion does not follow the recorded force, with the equations of
 /// the force up to it.
 pub fn beyond(
@@ -108,7 +119,10 @@ pub fn beyond(
     for equations in &mut light {
         equations.above = None;
     }
-    let rest = |limit: f64| error(&light, asked, limit).map_or(f64::INFINITY, |(rest, ..)| rest);
+    let rest = |limit: f64| {
+        let found = (limit > 0.0).then(|| error(&light, asked, limit)).flatten();
+        found.map_or(f64::INFINITY, |(rest, ..)| rest)
+    };
     let each = limits.iter().map(|limit| (rest(*limit), *limit));
     let (mut least, mut best) = each.min_by(|a, b| a.0.total_cmp(&b.0))?;
     if least > 0.5 * (1.0 + BETTER) * now {
@@ -121,8 +135,7 @@ pub fn beyond(
     let mut step = near.fold(0.0, f64::max);
     for _ in 0..ROUNDS {
         step *= 0.5;
-        let near = [best - step, best + step].into_iter();
-        for limit in near.filter(|limit| *limit > 0.0) {
+        for limit in [best - step, best + step] {
             let rest = rest(limit);
             if rest < least {
                 (least, best) = (rest, limit);
@@ -132,8 +145,35 @@ pub fn beyond(
     if least > BETTER * now {
         return None;
     }
-    let (_, next, with) = error(all, asked, best)?;
+    // Near the least the squares run as a parabola: its vertex.
+    let [below, above] = [best - step, best + step].map(&rest);
+    if let Some(by) = vertex([below, least, above].map(|rest| rest * rest))
+        && rest(best + by * step) < least
+    {
+        best += by * step;
+    }
+    let (left, next, with) = error(all, asked, best)?;
+    if share(&with, &next, 0, 1) < ACCELERATES * left {
+        return None;
+    }
     let above = sizes.iter().filter(|size| **size > best).count();
-    let share = above as f64 / sizes.len().max(1) as f64;
-    Some((Saturation::Beyond { limit: best, share }, next, with))
+    let limited = Saturation::Beyond {
+        limit: best,
+        share: above as f64 / sizes.len().max(1) as f64,
+    };
+    Some((limited, next, with))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// (x − 0.3)² at −1, 0 and 1.
+    #[test]
+    fn the_vertex_of_a_parabola() {
+        let by = vertex([1.69, 0.09, 0.49]).unwrap();
+        assert!((by - 0.3).abs() < 1e-12, "{by}");
+        assert_eq!(vertex([1.0, 1.0, 1.0]), None);
+        assert_eq!(vertex([1.0, 1.0, f64::INFINITY]), None);
+    }
 }

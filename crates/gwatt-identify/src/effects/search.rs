@@ -1,5 +1,7 @@
 //! One effect after another, as long as each predicts the recordings clearly better.
 
+use std::f64::consts::TAU;
+
 use super::super::equations::Equations;
 use super::super::figure::Figure;
 use super::super::friction::{
@@ -28,7 +30,7 @@ const PLAYS: [f64; 2] = [1e-4, 0.3];
 const SPEEDS: [f64; 2] = [0.004, 0.4];
 const SIZES: usize = 12;
 /// Halvings of the distance between sizes.
-const HALVINGS: usize = 4;
+const HALVINGS: u32 = 4;
 /// A position explains so many times as much as a time, where a force is periodic in it.
 const RATHER_THAN_TIME: f64 = 1.5;
 /// A load within a play has such a share of the mass, at least and at most.
@@ -309,7 +311,10 @@ fn effect(settled: &Settled, shape: Shape, size_std: f64, at: usize) -> Effect {
             }
         }
         Shape::Backlash(play) => Effect::Backlash {
-            width: with_std(play.width),
+            width: Figure {
+                value: play.width,
+                std: libm::hypot(play.width * size_std, blurred(all, play)),
+            },
             mass: single(0),
             share,
         },
@@ -321,8 +326,22 @@ fn effect(settled: &Settled, shape: Shape, size_std: f64, at: usize) -> Effect {
     }
 }
 
+/// How far a width is in doubt besides, m (rad): by the distance of the sizes that are tried,
+/// and by how far the motor goes on while it pushes the load to its speed. How long that takes
+/// does not show in the band.
+fn blurred(all: &[Equations], play: Play) -> f64 {
+    let [from, to] = PLAYS;
+    let halved = f64::from(1_u32 << HALVINGS);
+    let ratio = libm::log(to / from) / ((SIZES - 1) as f64 * halved);
+    let while_pushed = largest(all, |equations| {
+        let speed = play.catching_speed(&equations.raw).unwrap_or_default();
+        speed / (TAU * equations.bandwidth_hz)
+    });
+    libm::hypot(play.width * ratio / 12.0_f64.sqrt(), while_pushed)
+}
+
 /// Norm of the force of some columns by norm of the force.
-fn share(all: &[Equations], solved: &Solved, at: usize, count: usize) -> f64 {
+pub fn share(all: &[Equations], solved: &Solved, at: usize, count: usize) -> f64 {
     let (mut own, mut total) = (0.0, 0.0);
     for equations in all {
         counted_rows(equations, solved.terms, |row, force| {

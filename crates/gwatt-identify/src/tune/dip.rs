@@ -129,6 +129,7 @@ mod tests {
             variance: vec![noise * noise; frequency_hz.len()],
             frequency_hz,
             periodic: true,
+            noise_values: 0,
         }
     }
 
