@@ -31,6 +31,7 @@ mod into;
 mod limit_set;
 mod listing;
 mod machine_import;
+mod machine_motors;
 mod machine_new;
 mod machine_questions;
 mod many;
