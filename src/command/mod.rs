@@ -46,6 +46,7 @@ mod rows;
 mod series;
 mod schedule_file;
 mod settings;
+mod set_page;
 mod setup;
 mod signal;
 mod terminal;
