@@ -3,6 +3,7 @@
 mod browser;
 mod compared;
 mod outputs;
+mod sets;
 mod shown;
 
 use std::fs;

@@ -10,6 +10,7 @@ mod layers;
 mod conformance;
 mod controls;
 mod converter;
+mod core;
 mod corners;
 mod expressions;
 mod flow;

@@ -95,6 +95,7 @@ fuzz_target!(|bytes: &[u8]| {
             _ => Some(Certificate::Robust),
         },
         threads: 1 + usize::from(threads & 1),
+        count: None,
     };
     let run = |program: &[u8], options: &Options| -> Option<(Vec<u8>, LimitSummary)> {
         let mut output = Vec::new();

@@ -13,6 +13,7 @@ Examples:
   gwatt identify x.csv --axis X --into mill.toml --force   whatever the verdict
   gwatt identify x.csv --axis X --model flexible --validate x2.csv
   gwatt identify x.csv --axis X --method frequency --order 4
+  gwatt identify x.csv --axis X --html x.html          look at what was found
 
 The header names quantities and units: time_s; force_n or torque_nm;
 position_m, position_mm, position_um, position_rad, position_deg;
@@ -100,6 +101,9 @@ pub struct IdentifyArgs {
     /// Put it there whatever the verdict
     #[arg(long, requires = "into")]
     pub force: bool,
+    /// Write a page with the measured response, the model over it, and what it leaves
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
     /// Flexible: write measured and modelled frequency response as CSV
     #[arg(long, value_name = "FILE")]
     pub response: Option<PathBuf>,

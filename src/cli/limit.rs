@@ -62,8 +62,8 @@ pub struct LimitArgs {
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
     /// Write a page with the power over time before and after, the path and the worst
-    /// blocks here
-    #[arg(long, value_name = "PAGE", conflicts_with = "with_subprograms")]
+    /// blocks here; with --with-subprograms one page of all programs
+    #[arg(long, value_name = "PAGE")]
     pub html: Option<PathBuf>,
     /// Draw the power over time before and after here
     #[arg(long, value_name = "FILE", conflicts_with = "with_subprograms")]

@@ -19,6 +19,10 @@ pub enum MachineCommand {
         /// Its name.
         name: String,
     },
+    /// List the motors of which a document is at hand: rotor inertia, torque and speed, for
+    /// `machine new`
+    #[command(after_help = "Example:\n  gwatt machine motors")]
+    Motors,
     /// Check a machine file and say what its axes come to
     #[command(after_help = "Example:\n  gwatt machine check mill.toml")]
     Check {

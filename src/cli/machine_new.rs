@@ -13,7 +13,8 @@ An axis is its letter, a colon, and what is known of it, with commas between:
   table_kg          what slides: table, slide, head   workpiece_kg  the heaviest on it
   screw=20x800x10   diameter, length and lead in mm   pinion=40x20  pitch diameter, width in mm
   belt=20x2x9       teeth of its pulleys, pitch and width in mm     drive=linear-motor
-  rotor_kg_m2       with coupling and brake           gear_ratio    motor by screw or wheel
+  motor=sgm7j-04a   one of `gwatt machine motors`     gear_ratio    motor by screw or wheel
+  rotor_kg_m2       its rotor, with coupling and brake
   coulomb_n         friction; or guide_friction, the coefficient of its guides
   counterweight_kg  balances Z and moves with it     efficiency    mechanical by electrical power
   jerk_mm_s3        jerk
@@ -23,6 +24,8 @@ how it counts. On a terminal, without --axis, all is asked for.
 
 Examples:
   gwatt machine new -o mine.toml
+  gwatt machine new --kind mill --supply 3500 --motor sgmsh-20aa -o mill.toml \\
+    --axis X:rapid_mm_min=24000,accel_mm_s2=3000,table_kg=300,screw=32x1000x10
   gwatt machine new --kind router --supply 400 -o router.toml \\
     --axis X:rapid_mm_min=12000,accel_mm_s2=1500,table_kg=20,screw=16x900x10,rotor_kg_m2=0.00003 \\
     --axis Y:rapid_mm_min=12000,accel_mm_s2=1500,table_kg=35,screw=16x900x10,rotor_kg_m2=0.00003 \\
@@ -41,6 +44,9 @@ pub struct NewArgs {
     /// Its name
     #[arg(long)]
     pub name: Option<String>,
+    /// The motor of all axes that name none of their own: one of `gwatt machine motors`
+    #[arg(long, value_name = "NAME")]
+    pub motor: Option<String>,
     /// What the supply of the drives delivers at most, in W
     #[arg(long, value_name = "W")]
     pub supply: Option<f64>,

@@ -11,7 +11,10 @@ use gwatt::identify::response_table::{self, ResponseFigures};
 use gwatt::identify::rigid::{self, Figure, Rigid};
 use gwatt::identify::tune::Zero;
 use gwatt::identify::{Judgement, Kind, Quantity, Recording, TransferFunction};
-use gwatt::report::{Heading, Verdict, flexible_json, flexible_text, rigid_json, rigid_text};
+use gwatt::report::{
+    Heading, Verdict, flexible_json, flexible_page, flexible_text, rigid_json, rigid_page,
+    rigid_text,
+};
 
 use super::clash::refuse_clashes;
 use super::input::is_dash;
@@ -47,11 +50,14 @@ pub fn run(args: &IdentifyArgs, terminal: Terminal) -> Result<Verdict> {
         .chain(&args.validate)
         .map(AsRef::as_ref)
         .collect();
-    let outputs: Vec<&Path> = [&args.json, &args.toml, &args.into, &args.response]
-        .into_iter()
-        .flatten()
-        .map(AsRef::as_ref)
-        .collect();
+    let files = [
+        &args.json,
+        &args.toml,
+        &args.into,
+        &args.response,
+        &args.html,
+    ];
+    let outputs: Vec<&Path> = files.into_iter().flatten().map(AsRef::as_ref).collect();
     refuse_clashes(&inputs, &outputs)?;
     let model = ModelChoice::of(args)?;
     let reader = RecordingReader::new(args, letter)?;
@@ -97,7 +103,7 @@ pub fn run(args: &IdentifyArgs, terminal: Terminal) -> Result<Verdict> {
         }
     };
     let heading = heading(args, letter, recording, validation);
-    deliver(args, &heading, &found, terminal)
+    deliver(args, &heading, &found, recording, terminal)
 }
 
 /// The recordings by name; many by their number.
@@ -200,6 +206,7 @@ fn deliver(
     args: &IdentifyArgs,
     heading: &Heading,
     found: &Found,
+    recording: &Recording,
     terminal: Terminal,
 ) -> Result<Verdict> {
     let method = method_name(args.method);
@@ -223,6 +230,16 @@ fn deliver(
     }
     if let (Some(path), Found::Flexible(axis)) = (&args.response, found) {
         spools.push(spooled(path, |out| response(axis, out))?);
+    }
+    if let Some(path) = &args.html {
+        spools.push(spooled(path, |out| match found {
+            // What cannot be laid over its recording has figures alone.
+            Found::Rigid(axis) => {
+                let trace = rigid::trace(axis, recording).ok();
+                rigid_page(heading, axis, trace.as_ref(), out)
+            }
+            Found::Flexible(axis) => flexible_page(heading, method, axis, out),
+        })?);
     }
     let response = match found {
         Found::Flexible(axis) => Some(response_figures(axis)),
@@ -257,7 +274,7 @@ fn deliver(
     for note in &heading.notes {
         terminal.note(note);
     }
-    let stdout_is_taken = [&args.json, &args.toml, &args.response]
+    let stdout_is_taken = [&args.json, &args.toml, &args.response, &args.html]
         .into_iter()
         .flatten()
         .any(|path| is_dash(path));

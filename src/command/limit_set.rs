@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, ensure};
 use gwatt::pipeline::{
-    Failure, LimitSummary, SetFailure, SetFile, SetProgram, SetSummary, limit_set,
+    Failure, LimitSummary, LineCount, SetFailure, SetFile, SetProgram, SetSummary, limit_set,
 };
 use gwatt::report::{Verdict, limit_text, partial_text, set_json, set_text, unified_diff};
 
@@ -14,8 +14,10 @@ use super::clash::refuse_clashes;
 use super::dialect;
 use super::input::{Program, is_dash};
 use super::listing::Listing;
-use super::output::{Target, print};
+use super::output::{Spool, Target, print};
+use super::progress::Progress;
 use super::rows::Rows;
+use super::set_page::{self, SetRows};
 use super::setup::{Setup, machine_file};
 use super::terminal::Terminal;
 use super::together::Together;
@@ -29,6 +31,8 @@ pub fn run(args: &LimitArgs, listing: &Listing, terminal: Terminal) -> Result<Ve
     dialect::settle(&mut setup, &mut programs, terminal)?;
     setup.options.certificate = args.how.certificate.map(Into::into);
     setup.options.rapid_mark.clone_from(&args.how.mark_rapids);
+    let count = LineCount::default();
+    setup.options.count = Some(count.clone());
     let mut set = Vec::with_capacity(programs.len());
     for program in &programs {
         match read(program, &setup) {
@@ -39,8 +43,15 @@ pub fn run(args: &LimitArgs, listing: &Listing, terminal: Terminal) -> Result<Ve
             }
         }
     }
+    if args.html.is_some() {
+        setup.one_way("--html shows")?;
+    }
     let report = args.report.as_deref().map(Target::new).transpose()?;
-    let mut rows = Rows::new(report, args.json.as_deref())?;
+    let rows = Rows::new(report, args.json.as_deref())?;
+    let mut rows = SetRows::new(rows, &set, args.html.is_some());
+    let page = set_page::open(args.html.as_deref())?;
+    let shape = terminal.progress(args.quiet);
+    let _progress = Progress::of_lines(shape, &name_of(&programs), count, PASSES);
     let limited = limit_set(&set, &setup.machine, args.how.options(), rows.sink());
     let limited = match limited {
         Ok(limited) => limited,
@@ -56,30 +67,64 @@ pub fn run(args: &LimitArgs, listing: &Listing, terminal: Terminal) -> Result<Ve
     };
     let placed = destinations(args, &limited.files);
     refuse_all_clashes(args, &limited.files, &placed)?;
-    let certified = limited.certified();
-    let slower = limited.programs.iter().any(|summary| summary.slower);
-    let partly = args.partial && !certified && limited.slower() && slower;
+    let partly = partly(args, &limited);
+    let page = page
+        .map(|page| set_page::draw(page, &set, &setup.machine, &limited, (&rows.pages, partly)));
+    let page = page.transpose()?;
     for (program, summary) in programs.iter().zip(&limited.programs) {
         show(&program.name, summary, partly, &setup, terminal);
     }
-    terminal.text(&set_text(&limited, certified || partly));
+    write(args, &limited, &placed, terminal, || {
+        let names: Vec<&str> = programs.iter().map(|it| it.name.as_str()).collect();
+        rows.rows
+            .deliver(|blocks, out| set_json(&names, &setup.machine.name, &limited, blocks, out))?;
+        page.map_or(Ok(()), Spool::deliver)
+    })?;
+    Ok(Verdict::of(limited.certified()))
+}
+
+/// How often the programs are run through as a rule: what files they call, what each line
+/// meets, the changes, and both sides of the certificate.
+const PASSES: u64 = 5;
+
+/// What the bar of several programs says.
+fn name_of(programs: &[Program]) -> String {
+    match programs {
+        [program] => program.name.clone(),
+        programs => format!("{} programs", programs.len()),
+    }
+}
+
+/// Whether what can be lowered is written, though not all of it fits.
+fn partly(args: &LimitArgs, limited: &SetSummary) -> bool {
+    let slower = limited.programs.iter().any(|summary| summary.slower);
+    args.partial && !limited.certified() && limited.slower() && slower
+}
+
+/// Writes the files, once `reports` has written what is said of them.
+fn write(
+    args: &LimitArgs,
+    limited: &SetSummary,
+    placed: &[PathBuf],
+    terminal: Terminal,
+    reports: impl FnOnce() -> Result<()>,
+) -> Result<()> {
+    let written = limited.certified() || partly(args, limited);
+    terminal.text(&set_text(limited, written));
     let mut together = Together::default();
-    if (certified || partly) && !args.dry_run {
-        for (file, path) in limited.files.iter().zip(&placed) {
+    if written && !args.dry_run {
+        for (file, path) in limited.files.iter().zip(placed) {
             // In place, what is not changed is not touched.
             if !(args.in_place && file.edited_lines == 0) {
                 together.add(path, &file.text)?;
             }
         }
     }
-    rows.deliver(|blocks, out| {
-        let names: Vec<&str> = programs.iter().map(|it| it.name.as_str()).collect();
-        set_json(&names, &setup.machine.name, &limited, blocks, out)
-    })?;
-    if certified || partly {
-        deliver(args, &limited, together, terminal)?;
+    reports()?;
+    if written {
+        deliver(args, limited, together, terminal)?;
     }
-    Ok(Verdict::of(certified))
+    Ok(())
 }
 
 fn refuse_usage(args: &LimitArgs, programs: &[Program]) -> Result<()> {
@@ -145,6 +190,7 @@ fn refuse_all_clashes(args: &LimitArgs, files: &[SetFile], placed: &[PathBuf]) -
         .filter(|_| args.output.is_some() && !args.dry_run)
         .chain(args.report.as_deref())
         .chain(args.json.as_deref())
+        .chain(args.html.as_deref())
         .collect();
     refuse_clashes(&inputs, &outputs)?;
     if args.in_place {

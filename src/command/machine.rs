@@ -16,6 +16,7 @@ pub fn run(command: &MachineCommand, terminal: Terminal) -> Result<Verdict> {
     match command {
         MachineCommand::List => list()?,
         MachineCommand::Show { name } => show(name)?,
+        MachineCommand::Motors => super::machine_motors::run()?,
         MachineCommand::Check { file } => check(file, terminal)?,
         MachineCommand::Import(args) => super::machine_import::run(args, terminal)?,
         MachineCommand::New(args) => super::machine_new::run(args, terminal)?,

@@ -25,8 +25,8 @@ pub fn run(args: &NewArgs, terminal: Terminal) -> Result<()> {
     } else {
         args
     };
-    let draft = draft(args)?;
-    let (text, sums) = finished(&draft, terminal)?;
+    let mut draft = draft(args)?;
+    let (text, sums) = finished(&mut draft, terminal)?;
     for sentence in draft.left_out() {
         terminal.note(sentence);
     }
@@ -50,7 +50,13 @@ fn draft(args: &NewArgs) -> Result<Draft> {
         .kind
         .context("what kind of machine? --kind mill, lathe, router or printer")?
         .into();
-    let axes = args.axes.iter().map(|text| DraftAxis::parse(text, kind));
+    let axes = args.axes.iter().map(|text| {
+        let axis = DraftAxis::parse(text, kind)?;
+        match &args.motor {
+            Some(motor) => axis.with_motor(motor, kind),
+            None => Ok(axis),
+        }
+    });
     let draft = Draft {
         kind,
         name: args.name.clone().unwrap_or_else(|| format!("My {kind}")),
@@ -80,13 +86,17 @@ fn known_controller(name: &str) -> Result<()> {
 }
 
 /// The text, with what the axes come to: the file is read as any other.
-fn finished(draft: &Draft, terminal: Terminal) -> Result<(String, String)> {
+fn finished(draft: &mut Draft, terminal: Terminal) -> Result<(String, String)> {
     let read = |text: &str| {
         Machine::from_toml("the new file", text).map_err(|errors| {
             terminal.diagnostics("the new file", &errors);
             anyhow!(Shown)
         })
     };
+    let (machine, _) = read(&draft.machine_file(""))?;
+    for sentence in draft.settle_motors(&machine) {
+        terminal.note(sentence);
+    }
     let (machine, warnings) = read(&draft.machine_file(""))?;
     let sums = format!("{}{}", axis_table(&machine), mass_table(&machine));
     let text = draft.machine_file(&sums);

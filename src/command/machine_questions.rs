@@ -182,15 +182,27 @@ fn ask_axis(letter: char, kind: MachineKind, answers: &mut impl Answers) -> Resu
             continue;
         }
         let is_needed = needed.contains(&name);
+        // In place of its inertia a motor can be named.
+        let part = |answer: &str| match name {
+            "rotor_kg_m2" if answer.parse::<f64>().is_err() => format!("motor={answer}"),
+            _ => format!("{name}={answer}"),
+        };
+        let or_motor = match name {
+            "rotor_kg_m2" => ", or a name of `gwatt machine motors`",
+            _ => "",
+        };
         let empty = if is_needed { "" } else { " (empty: not known)" };
-        let answer = answers.text(&format!("{letter}: {}{empty}", key.what), &|answer| {
-            if answer.is_empty() && !is_needed {
-                return Ok(());
-            }
-            judged(name, &format!("{name}={answer}"))
-        })?;
+        let answer = answers.text(
+            &format!("{letter}: {}{or_motor}{empty}", key.what),
+            &|answer| {
+                if answer.is_empty() && !is_needed {
+                    return Ok(());
+                }
+                judged(name, &part(answer))
+            },
+        )?;
         if !answer.is_empty() {
-            parts.push(format!("{name}={answer}"));
+            parts.push(part(&answer));
         }
     }
     Ok(format!("{letter}:{}", parts.join(",")))
@@ -287,6 +299,23 @@ mod tests {
             );
         }
         assert!(script.answers.is_empty());
+    }
+
+    /// A motor is named in place of its inertia.
+    #[test]
+    fn a_motor_answers_for_its_rotor() {
+        let given = args(&["--kind", "router", "--supply", "900", "--name", "R"]);
+        let mut script = Script {
+            answers: ";;X;a screw;16x900x10;9000;500;3;;nema;as1050;;;"
+                .split(';')
+                .collect(),
+            shown: String::new(),
+        };
+        let asked = ask(given, &mut script).unwrap();
+        let x = "X:screw=16x900x10,rapid_mm_min=9000,accel_mm_s2=500,table_kg=3,motor=as1050";
+        assert_eq!(asked.axes, [x], "{}", script.shown);
+        let wrong = "`motor=nema`: there is no such motor in `gwatt machine motors`";
+        assert!(script.shown.contains(wrong), "{}", script.shown);
     }
 
     /// What options say is not asked for.

@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::{BufWriter, IntoInnerError, Read, Seek, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use gwatt::machine::Machine;
@@ -47,8 +47,9 @@ impl<'a> Pictures<'a> {
     /// Opens what they go to, so that a place that cannot be written is known before the
     /// work begins.
     pub fn open(self) -> Result<Frames> {
-        let spool = |path: Option<&Path>| -> Result<Option<Spool>> {
-            path.map(|path| Target::new(path)?.spool()).transpose()
+        let spool = |path: Option<&Path>| -> Result<Option<(Spool, PathBuf)>> {
+            let open = |path: &Path| Ok((Target::new(path)?.spool()?, path.to_owned()));
+            path.map(open).transpose()
         };
         Ok(Frames {
             html: spool(self.html)?,
@@ -60,25 +61,28 @@ impl<'a> Pictures<'a> {
 /// Pictures on their way: dropped, they leave no trace.
 #[derive(Debug)]
 pub struct Frames {
-    html: Option<Spool>,
-    svg: Option<Spool>,
+    html: Option<(Spool, PathBuf)>,
+    svg: Option<(Spool, PathBuf)>,
 }
 
 impl Frames {
     /// Draws them.
     pub fn draw(&mut self, page: &Page<'_>) -> Result<()> {
-        let write = |spool: Option<Spool>, html: bool| -> Result<Option<Spool>> {
-            let Some(spool) = spool else {
+        type Frame = Option<(Spool, PathBuf)>;
+        let write = |frame: Frame, html: bool| -> Result<Frame> {
+            let Some((spool, path)) = frame else {
                 return Ok(None);
             };
+            let failed = || format!("cannot write {}", path.display());
             let mut out = BufWriter::new(spool);
             let drawn = if html {
                 page.write_html(&mut out)
             } else {
                 page.write_svg(&mut out)
             };
-            drawn.and_then(|()| out.flush()).context("cannot write")?;
-            Ok(Some(out.into_inner().map_err(IntoInnerError::into_error)?))
+            drawn.and_then(|()| out.flush()).with_context(failed)?;
+            let spool = out.into_inner().map_err(IntoInnerError::into_error)?;
+            Ok(Some((spool, path)))
         };
         self.html = write(self.html.take(), true)?;
         self.svg = write(self.svg.take(), false)?;
@@ -88,7 +92,7 @@ impl Frames {
     /// Puts them where they are to go.
     pub fn deliver(self) -> Result<()> {
         let mut both = self.html.into_iter().chain(self.svg);
-        both.try_for_each(Spool::deliver)
+        both.try_for_each(|(spool, _)| spool.deliver())
     }
 }
 

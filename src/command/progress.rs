@@ -10,6 +10,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use gwatt::pipeline::LineCount;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::interrupt;
@@ -87,6 +88,13 @@ impl Shape {
 enum Work {
     /// Bytes of programs that are read, several times each, as a rule so often.
     Bytes { name: String, passes: u64 },
+    /// Lines of programs that are limited together: how many a pass has is known after the
+    /// first one.
+    Lines {
+        name: String,
+        count: LineCount,
+        passes: u64,
+    },
     /// Programs.
     Programs,
 }
@@ -101,26 +109,41 @@ struct State {
 impl State {
     /// In percent, never less than before.
     fn percent(&self) -> u64 {
-        let passes = match self.work {
-            Work::Bytes { passes, .. } => passes,
-            Work::Programs => 1,
+        let (done, total, passes) = match &self.work {
+            Work::Bytes { passes, .. } => (self.done.get(), self.total, *passes),
+            Work::Lines { count, passes, .. } => match count.in_a_pass() {
+                0 => return 0,
+                pass => (count.done(), pass, *passes),
+            },
+            Work::Programs => (self.done.get(), self.total, 1),
         };
-        let all = self.total.saturating_mul(passes).max(1);
+        let all = total.saturating_mul(passes).max(1);
         // The end is said by the run that has come to it.
-        (self.done.get().saturating_mul(100) / all).min(99)
+        (done.saturating_mul(100) / all).min(99)
     }
 
-    /// What stands before the bar, and how much of it is full.
-    fn line(&self) -> (String, u64) {
+    /// What stands before the bar, how much of it is full, and of how much.
+    fn line(&self) -> (String, u64, u64) {
         let (done, total) = (self.done.get(), self.total.max(1));
         match &self.work {
-            Work::Bytes { name, .. } => {
-                let pass = done.saturating_sub(1) / total + 1;
-                (format!("{name}, pass {pass}"), done - (pass - 1) * total)
-            }
-            Work::Programs => (format!("{done} of {total} programs"), done),
+            Work::Bytes { name, .. } => in_passes(name, done, total),
+            Work::Lines { name, count, .. } => match (count.done(), count.in_a_pass()) {
+                (done, 0) => (format!("{name}, {done} lines"), 0, 1),
+                (done, total) => in_passes(name, done, total),
+            },
+            Work::Programs => (format!("{done} of {total} programs"), done, total),
         }
     }
+}
+
+/// What is said of the pass that `done` is in, where each has `total`.
+fn in_passes(name: &str, done: u64, total: u64) -> (String, u64, u64) {
+    let pass = done.saturating_sub(1) / total + 1;
+    (
+        format!("{name}, pass {pass}"),
+        done - (pass - 1) * total,
+        total,
+    )
 }
 
 /// Counts what is done.
@@ -151,6 +174,18 @@ impl Progress {
     pub fn of_bytes(shape: Shape, name: &str, total: u64, passes: u64) -> Self {
         let name = name.to_owned();
         Self::of(shape, Work::Bytes { name, passes }, total)
+    }
+
+    /// Of programs that are limited together, whose lines are counted, as a rule in so many
+    /// passes.
+    pub fn of_lines(shape: Shape, name: &str, count: LineCount, passes: u64) -> Self {
+        let name = name.to_owned();
+        let work = Work::Lines {
+            name,
+            count,
+            passes,
+        };
+        Self::of(shape, work, 1)
     }
 
     /// Of so many programs.
@@ -224,8 +259,9 @@ fn draw(state: &State, after: Duration, stop: &(Mutex<bool>, Condvar)) {
     *shown() = Some(bar);
     loop {
         if let Some(bar) = &*shown() {
-            let (message, done) = state.line();
+            let (message, done, total) = state.line();
             bar.set_message(message);
+            bar.set_length(total);
             bar.set_position(done);
             bar.tick();
         }
@@ -279,9 +315,9 @@ mod tests {
     #[test]
     fn passes_are_counted_and_the_end_is_left_to_the_run() {
         let line = |done| state(bytes(), 1000, done).line();
-        assert_eq!(line(0), ("a.nc, pass 1".to_owned(), 0));
-        assert_eq!(line(1000), ("a.nc, pass 1".to_owned(), 1000));
-        assert_eq!(line(1001), ("a.nc, pass 2".to_owned(), 1));
+        assert_eq!(line(0), ("a.nc, pass 1".to_owned(), 0, 1000));
+        assert_eq!(line(1000), ("a.nc, pass 1".to_owned(), 1000, 1000));
+        assert_eq!(line(1001), ("a.nc, pass 2".to_owned(), 1, 1000));
         let percent = |done| state(bytes(), 1000, done).percent();
         assert_eq!(
             [0, 1000, 3999, 4000, 90_000].map(percent),
@@ -293,8 +329,20 @@ mod tests {
     #[test]
     fn programs_are_counted() {
         let state = state(Work::Programs, 8, 2);
-        assert_eq!(state.line(), ("2 of 8 programs".to_owned(), 2));
+        assert_eq!(state.line(), ("2 of 8 programs".to_owned(), 2, 8));
         assert_eq!(state.percent(), 25);
+    }
+
+    #[test]
+    fn a_pass_of_unknown_length_has_no_share() {
+        let work = Work::Lines {
+            name: "2 programs".to_owned(),
+            count: LineCount::default(),
+            passes: 5,
+        };
+        let state = state(work, 1, 0);
+        assert_eq!(state.line(), ("2 programs, 0 lines".to_owned(), 0, 1));
+        assert_eq!(state.percent(), 0);
     }
 
     #[test]

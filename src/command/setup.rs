@@ -102,6 +102,7 @@ impl Setup {
             once: reading.once,
             rapid_mark: None,
             threads: threads(reading),
+            count: None,
         };
         Ok(Self {
             machine,

@@ -1,9 +1,11 @@
 //! An axis as it is given: `X:rapid_mm_min=30000,table_kg=60,screw=20x800x10,…`.
 
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 use super::key::{KEYS, Key};
 use super::{DraftError, MachineKind};
+use crate::machine::{Motor, MotorSeries, motor};
 
 /// What drives an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +27,10 @@ pub struct DraftAxis {
     pub letter: char,
     /// What drives it.
     pub drive: Drive,
+    /// Its motor, and the document that this comes from.
+    pub motor: Option<(Motor, MotorSeries)>,
+    /// Whether its torque limits the acceleration that is asked for.
+    pub(super) torque_limits: bool,
     figures: BTreeMap<&'static str, f64>,
 }
 
@@ -55,6 +61,8 @@ impl DraftAxis {
         let mut axis = Self {
             letter,
             drive: Drive::Direct,
+            motor: None,
+            torque_limits: false,
             figures: BTreeMap::new(),
         };
         let mut drive = None;
@@ -73,6 +81,7 @@ impl DraftAxis {
                         return Err(fault("it has two drives: keep one".to_owned()));
                     }
                 }
+                None if key.trim() == "motor" => axis.take_motor(value).map_err(fault)?,
                 None => axis.take(key, value).map_err(fault)?,
             }
         }
@@ -83,11 +92,42 @@ impl DraftAxis {
         Ok(axis)
     }
 
+    fn take_motor(&mut self, name: &str) -> Result<(), String> {
+        let Some(found) = motor(name) else {
+            return Err(format!(
+                "`motor={name}`: there is no such motor in `gwatt machine motors`; give \
+                 rotor_kg_m2 from its data sheet"
+            ));
+        };
+        match self.motor.replace(found) {
+            Some(_) => Err("`motor` is given twice: keep one of the two".to_owned()),
+            None => Ok(()),
+        }
+    }
+
+    /// Gives it this motor, unless it has one or needs none.
+    ///
+    /// # Errors
+    /// What is wrong, and what to do.
+    pub fn with_motor(mut self, name: &str, kind: MachineKind) -> Result<Self, DraftError> {
+        if self.motor.is_some() || self.drive == Drive::Direct {
+            return Ok(self);
+        }
+        let axis = self.letter.to_string();
+        let fault = |wrong: String| DraftError::Axis {
+            axis: axis.clone(),
+            wrong,
+        };
+        self.take_motor(name).map_err(fault)?;
+        self.check(kind).map_err(fault)?;
+        Ok(self)
+    }
+
     fn take(&mut self, name: &str, value: &str) -> Result<(), String> {
         let key = KEYS.iter().find(|key| key.name == name).ok_or_else(|| {
             let names: Vec<&str> = KEYS.iter().map(|key| key.name).collect();
             format!(
-                "`{name}` is not known; there are {}, screw, pinion, belt and drive",
+                "`{name}` is not known; there are {}, motor, screw, pinion, belt and drive",
                 names.join(", ")
             )
         })?;
@@ -121,7 +161,50 @@ impl DraftAxis {
         if self.drive == Drive::Direct && self.get("rotor_kg_m2").is_some_and(|it| it > 0.0) {
             return Err("a linear motor has no rotor: add its mass to `table_kg`".into());
         }
-        Ok(())
+        if self.drive == Drive::Direct && self.motor.is_some() {
+            return Err("`motor` is one that turns, but the axis has a linear motor".into());
+        }
+        self.check_speed()
+    }
+
+    /// Refuses a rapid that its motor cannot turn.
+    fn check_speed(&self) -> Result<(), String> {
+        let Some((motor, _)) = &self.motor else {
+            return Ok(());
+        };
+        let (Some(max_rpm), Some(travel_mm)) = (motor.max_rpm, self.travel_mm()) else {
+            return Ok(());
+        };
+        let rpm = self.get("rapid_mm_min").unwrap_or(0.0) / travel_mm;
+        if rpm <= max_rpm * (1.0 + 1e-9) {
+            return Ok(());
+        }
+        Err(format!(
+            "its rapid turns the motor at {rpm:.0} rpm, and {} has {max_rpm} at most: at most \
+             rapid_mm_min={:.0}",
+            motor.name,
+            (max_rpm * travel_mm).floor()
+        ))
+    }
+
+    /// How far a revolution of the motor moves it, mm; `None` for a linear motor.
+    #[must_use]
+    pub fn travel_mm(&self) -> Option<f64> {
+        let gear = self.get("gear_ratio").unwrap_or(1.0);
+        let own = match self.drive {
+            Drive::Screw([_, _, lead]) => lead,
+            Drive::Pinion([diameter, _]) => PI * diameter,
+            Drive::Belt([teeth, pitch, _]) => teeth * pitch,
+            Drive::Direct => return None,
+        };
+        Some(own / gear)
+    }
+
+    /// Rotor inertia, as given or of its motor, kg·m².
+    #[must_use]
+    pub fn rotor_kg_m2(&self) -> Option<f64> {
+        let of_motor = self.motor.as_ref().map(|(motor, _)| motor.rotor_kg_m2);
+        self.get("rotor_kg_m2").or(of_motor)
     }
 
     /// A figure, in the unit of its name.
@@ -139,7 +222,7 @@ impl DraftAxis {
     /// Whether something that may be left out was, and matters for it.
     pub(super) fn lacks(&self, field: &str, kind: MachineKind) -> bool {
         match field {
-            "rotor inertia" => self.drive != Drive::Direct && self.get("rotor_kg_m2").is_none(),
+            "rotor inertia" => self.drive != Drive::Direct && self.rotor_kg_m2().is_none(),
             "friction" => self.get("guide_friction").is_none() && self.get("coulomb_n").is_none(),
             "counterweight" => {
                 kind.is_vertical(self.letter) && self.get("counterweight_kg").is_none()

@@ -8,9 +8,13 @@ mod axis;
 mod key;
 mod write;
 
+use std::f64::consts::TAU;
 use std::fmt;
 
 use thiserror::Error;
+
+use crate::machine::units::M_PER_MM;
+use crate::machine::{ALL_AXES, Machine};
 
 pub use axis::{DraftAxis, Drive};
 pub use key::KEYS;
@@ -135,6 +139,47 @@ impl Draft {
             }
         }
         Ok(())
+    }
+
+    /// Looks whether the motors bear what is asked of them, in the machine that was read back
+    /// from the draft: one sentence each. Where the acceleration takes more torque than a motor
+    /// has, the file gets that torque, which limits it.
+    pub fn settle_motors(&mut self, machine: &Machine) -> Vec<String> {
+        let mut said = Vec::new();
+        for draft in &mut self.axes {
+            let found = ALL_AXES.into_iter().zip(&machine.axes);
+            let own = found
+                .filter(|(id, _)| char::from(id.letter()) == draft.letter)
+                .find_map(|(_, axis)| axis.as_ref());
+            let (Some((motor, _)), Some(travel_mm), Some(axis)) =
+                (&draft.motor, draft.travel_mm(), own)
+            else {
+                continue;
+            };
+            // N·m at the motor for each N at the load: the travel of a radian.
+            let lever_m = travel_mm * M_PER_MM / TAU;
+            let steady_nm = (axis.coulomb_n + axis.gravity_n.abs()) * lever_m;
+            let moving_n = axis.mass_kg * axis.accel_mm_s2 * axis.si_per_unit;
+            let needed_nm = steady_nm + moving_n * lever_m;
+            let (letter, name) = (draft.letter, &motor.name);
+            if needed_nm > motor.most_nm() {
+                draft.torque_limits = true;
+                said.push(format!(
+                    "{letter}: {} mm/s2 takes {needed_nm:.3} N m of the motor {name}, which has \
+                     {} at most: the file has its torque, which limits the acceleration",
+                    axis.accel_mm_s2,
+                    motor.most_nm()
+                ));
+            }
+            if steady_nm > motor.continuous_nm {
+                said.push(format!(
+                    "{letter}: friction and weight take {steady_nm:.3} N m of the motor {name}, \
+                     which bears {} for ever",
+                    motor.continuous_nm
+                ));
+            }
+        }
+        said
     }
 
     /// What was not given, and how it counts: one sentence each.

@@ -60,7 +60,9 @@ pub(super) fn machine_file(draft: &Draft, sums: &str) -> String {
 }
 
 fn axis_table(out: &mut String, axis: &DraftAxis, kind: MachineKind) {
-    let _ = writeln!(out, "\n[axes.{}]\nkind = \"linear\"", axis.letter);
+    out.push('\n');
+    motor(out, axis);
+    let _ = writeln!(out, "[axes.{}]\nkind = \"linear\"", axis.letter);
     let mut field = |name: &str, value: Option<f64>, comment: &str| {
         if let Some(value) = value {
             line(out, name, value, comment);
@@ -88,10 +90,11 @@ fn axis_table(out: &mut String, axis: &DraftAxis, kind: MachineKind) {
     }
     let accelerated = rounded(moved + balancing.unwrap_or(0.0));
     field("moved_mass_kg", Some(accelerated), &comment);
-    let rotor = axis.get("rotor_kg_m2").unwrap_or(0.0);
-    let comment = match (axis.drive, axis.get("rotor_kg_m2")) {
-        (Drive::Direct, _) => "a linear motor has no rotor",
-        (_, None) => "not given",
+    let rotor = axis.rotor_kg_m2().unwrap_or(0.0);
+    let comment = match (axis.drive, axis.get("rotor_kg_m2"), &axis.motor) {
+        (Drive::Direct, _, _) => "a linear motor has no rotor",
+        (_, None, Some(_)) => "of the motor; coupling and brake come on top",
+        (_, None, None) => "not given",
         _ => "",
     };
     field("rotor_kg_m2", Some(rotor), comment);
@@ -138,6 +141,47 @@ fn axis_table(out: &mut String, axis: &DraftAxis, kind: MachineKind) {
         field("gravity_n", Some(rounded(weight)), &comment);
     }
     field("efficiency", axis.get("efficiency"), "");
+    torque(out, axis);
+}
+
+/// What is known of its motor.
+fn motor(out: &mut String, axis: &DraftAxis) {
+    let Some((motor, series)) = &axis.motor else {
+        return;
+    };
+    let _ = write!(
+        out,
+        "# Motor {} ({}): {} N m",
+        motor.name, motor.maker, motor.continuous_nm
+    );
+    if let Some(peak) = motor.peak_nm {
+        let _ = write!(out, ", for a moment {peak} N m");
+    }
+    if let Some(rpm) = motor.max_rpm {
+        let _ = write!(out, ", up to {rpm} rpm");
+    }
+    let _ = writeln!(out, ". From: {}", one_line(&series.document));
+    let _ = writeln!(out, "# {}", one_line(&series.url));
+}
+
+/// The torque of its motor, where the acceleration that is asked for needs more.
+fn torque(out: &mut String, axis: &DraftAxis) {
+    let (Some((motor, _)), Some(travel_mm), true) =
+        (&axis.motor, axis.travel_mm(), axis.torque_limits)
+    else {
+        return;
+    };
+    let rapid_rpm = axis.get("rapid_mm_min").unwrap_or(0.0) / travel_mm;
+    let end_rpm = motor.max_rpm.unwrap_or(rapid_rpm).max(rapid_rpm).ceil();
+    let most = shown(motor.most_nm());
+    let curve = format!(
+        "torque_curve = [{{ rpm = 0, torque_nm = {most} }}, {{ rpm = {}, torque_nm = {most} }}]",
+        shown(end_rpm)
+    );
+    let _ = writeln!(
+        out,
+        "# Less at speed, which its document shows as a picture: powers count higher without.\n{curve}"
+    );
 }
 
 /// The numbers of a drive as they are written.

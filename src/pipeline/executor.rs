@@ -7,6 +7,7 @@
 use std::io::{Read, Seek, SeekFrom};
 use std::path::PathBuf;
 
+use super::line_count::LineCount;
 use super::line_key::LineKey;
 use super::{Failure, Options};
 use crate::diagnostic::{Diagnostic, Severity};
@@ -62,10 +63,16 @@ pub(super) struct Executor<'m, R> {
     flow: Option<Box<Flow>>,
     /// What is wrong with the flow: nothing more is executed.
     stuck: bool,
+    /// Counts the lines, where anyone looks.
+    count: Option<LineCount>,
 }
 
 impl<'m, R: Read + Seek> Executor<'m, R> {
     pub(super) fn new(input: R, machine: &'m Machine, options: &Options) -> Self {
+        if let Some(count) = &options.count {
+            // A program of a few lines is seen as well.
+            count.add(1);
+        }
         Self {
             reader: LineReader::new(input),
             reading: options.reading.clone(),
@@ -78,6 +85,7 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
             executed: 0,
             flow: None,
             stuck: false,
+            count: options.count.clone(),
         }
     }
 
@@ -117,6 +125,9 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
             return Ok(None);
         };
         self.lines = number;
+        if number.is_multiple_of(LineCount::AT_ONCE) {
+            self.count(LineCount::AT_ONCE);
+        }
         scan_line(text, number == 1, &mut self.block);
         self.steps.clear();
         self.interpreter.execute(
@@ -147,6 +158,13 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
             files: &[],
             interpreter,
         }))
+    }
+
+    #[cold]
+    fn count(&self, lines: u64) {
+        if let Some(count) = &self.count {
+            count.add(lines);
+        }
     }
 
     /// Reads the program again, whole, since the line that was just executed
@@ -189,6 +207,9 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
                 return Ok(None);
             }
         };
+        if let Some(count) = &self.count {
+            count.add(1);
+        }
         let run = flow.begin_line();
         flow.read(&mut self.block);
         let text = flow.text();

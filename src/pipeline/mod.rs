@@ -22,6 +22,7 @@ mod hints;
 mod ideal;
 mod judge;
 mod limiting;
+mod line_count;
 mod line_key;
 mod left_feed;
 mod derate;
@@ -70,6 +71,7 @@ pub use each_move::Moves;
 pub use hints::{as_advised, take_hints};
 pub use ideal::ideal;
 pub use limiting::limit;
+pub use line_count::LineCount;
 pub use motion::{MotionNotes, Stretch, motion};
 pub use options::{
     Allowed, Law, LimitOptions, Limits, Options, PresetElse, RapidMark, RapidMarkError, Reading,

@@ -2,6 +2,7 @@
 
 pub use crate::interpret::{Limits, Reading, Start};
 
+use super::line_count::LineCount;
 use super::row::Certificate;
 pub use crate::limit::{Allowed, Law, LimitOptions, PresetElse, Strategy};
 use crate::machine::Machine;
@@ -24,6 +25,8 @@ pub struct Options {
     pub rapid_mark: Option<RapidMark>,
     /// Threads that one program may use, at least 1.
     pub threads: usize,
+    /// Counts the lines that are executed.
+    pub count: Option<LineCount>,
 }
 
 impl Options {
@@ -42,6 +45,7 @@ impl Default for Options {
             once: false,
             rapid_mark: None,
             threads: 1,
+            count: None,
         }
     }
 }

@@ -99,6 +99,9 @@ pub trait RowSink: Send {
     /// Whatever the writing gives.
     fn row(&mut self, row: &Row) -> io::Result<()>;
 
+    /// The rows that follow are those of one program of several, by its place among them.
+    fn begin_program(&mut self, _place: usize) {}
+
     /// Whether the figures of the rows count, all of which are exact then; otherwise peaks below
     /// those that matter need not be.
     fn wants_figures(&self) -> bool {

@@ -39,6 +39,16 @@ impl Heading {
         }
     }
 
+    /// The unit of acceleration by what drives it.
+    pub(super) fn response_unit(&self) -> &'static str {
+        if self.rotary { "1/(kg·m²)" } else { "1/kg" }
+    }
+
+    /// What drives it.
+    pub(super) fn force_name(&self) -> &'static str {
+        if self.rotary { "torque" } else { "force" }
+    }
+
     /// Keys of mass, viscous friction, Coulomb friction and offset.
     fn keys(&self) -> [&'static str; 4] {
         let mass = if self.rotary {

@@ -20,6 +20,8 @@ mod held;
 #[cfg(feature = "html")]
 mod html;
 mod identified;
+#[cfg(feature = "html")]
+mod identify_page;
 mod json;
 #[cfg(feature = "junit")]
 mod junit;
@@ -58,11 +60,13 @@ pub use drives::{DriveRows, drives_text};
 pub use github::github;
 pub use held::Held;
 #[cfg(feature = "html")]
-pub use html::{Compared, Found, LineTexts, Page, PageRows, PageSeries, Side};
+pub use html::{Compared, Found, LineTexts, Page, PageRows, PageSeries, SetPage, Side};
 pub use identified::{
     Heading, flexible_json, flexible_text, margin, power_model_json, power_model_text, rigid_json,
     rigid_text,
 };
+#[cfg(feature = "html")]
+pub use identify_page::{flexible_page, rigid_page};
 pub use json::{JsonRows, check_json, check_json_line, limit_json, report_json, set_json};
 #[cfg(feature = "junit")]
 pub use junit::junit;

@@ -14,7 +14,11 @@ use crate::identify::{Factor, FrequencyResponse};
 
 const PAGE: &str = include_str!("page/tune.html");
 const STYLE: &str = include_str!("page/tune.css");
-const SCRIPT: &str = include_str!("page/tune.js");
+const SCRIPTS: [&str; 3] = [
+    include_str!("page/plot.js"),
+    include_str!("page/tune.js"),
+    include_str!("page/tune_view.js"),
+];
 /// Points of a measured response that can be distinguished.
 const POINTS_MAX: usize = 2048;
 
@@ -24,12 +28,22 @@ const POINTS_MAX: usize = 2048;
 ///
 /// When it cannot be written.
 pub fn tune_page(tuned: &Tuned, out: &mut dyn Write) -> io::Result<()> {
-    let mut rest = PAGE;
     let data = harmless(&data(tuned).to_string());
+    write_template(PAGE, &data, &SCRIPTS.concat(), out)
+}
+
+/// Writes a page: its style, data and scripts in place of their marks.
+pub(super) fn write_template(
+    page: &str,
+    data: &str,
+    scripts: &str,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let mut rest = page;
     for (mark, text) in [
         ("/*STYLE*/", STYLE),
-        ("/*DATA*/", data.as_str()),
-        ("/*SCRIPT*/", SCRIPT),
+        ("/*DATA*/", data),
+        ("/*SCRIPT*/", scripts),
     ] {
         if let Some((before, after)) = rest.split_once(mark) {
             out.write_all(before.as_bytes())?;
@@ -41,7 +55,7 @@ pub fn tune_page(tuned: &Tuned, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// JSON in which no tag can begin or end.
-fn harmless(json: &str) -> String {
+pub(super) fn harmless(json: &str) -> String {
     let mut text = String::with_capacity(json.len());
     for letter in json.chars() {
         match letter {
@@ -122,10 +136,13 @@ fn measured(response: &FrequencyResponse) -> Value {
             )
         })
         .unzip();
+    let coherence = response.coherence.iter().step_by(step);
+    let coherence = coherence.map(|it| number(Some(super::figure::round_to_digits(*it, 3))));
     let frequencies = response.frequency_hz.iter().step_by(step);
     json!({
         "frequency_hz": frequencies.map(|f| rounded(*f)).collect::<Vec<_>>(),
         "gain_db": gain,
         "phase_deg": phase,
+        "coherence": coherence.collect::<Vec<_>>(),
     })
 }

@@ -276,3 +276,110 @@ fn every_message_about_an_axis() {
         "its guides carry no weight, as it is vertical: give `coulomb_n`",
     );
 }
+
+/// The axes of a machine with that motor.
+fn with_motor(shop: &Shop, motor: &[&str], axis: &str) -> super::Ran {
+    let mill = ["machine", "new", "--kind", "mill", "--supply", "2000"];
+    shop.run(&[&mill[..], motor, &["--axis", axis]].concat())
+}
+
+const SCREW: &str = "rapid_mm_min=30000,table_kg=60,screw=20x800x10,coulomb_n=0";
+
+/// Lead 10 mm: k² = (2π/0.01)² = 394784. Table 60 kg, rotor 4.86e-5·k² = 19.19 kg, screw
+/// 38.94 kg: 118.1 kg. At 3 m/s² 354.4 N, times 0.01 m/2π are 0.564 N·m; at 30 m/s² 5.64 N·m.
+#[test]
+fn a_motor_of_the_catalogue_gives_its_rotor() {
+    let shop = Shop::new();
+    let ran = with_motor(
+        &shop,
+        &["--motor", "SGM7J-04A"],
+        &format!("X:accel_mm_s2=3000,{SCREW}"),
+    );
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    for part in [
+        "# Motor sgm7j-04a (Yaskawa): 1.27 N m, for a moment 4.46 N m, up to 6000 rpm. From: Sigma-7",
+        "rotor_kg_m2 = 0.0000486     # of the motor; coupling and brake come on top\n",
+        "118.1 kg = 60 moved mass + 19.19 rotor (0.0000486 kg m2) + 38.94 screw",
+    ] {
+        assert!(ran.stdout.contains(part), "{part}: {}", ran.stdout);
+    }
+    assert!(!ran.stdout.contains("torque_curve"), "{}", ran.stdout);
+    assert!(!ran.stderr.contains("rotor inertia"), "{}", ran.stderr);
+    // What is given of the rotor counts.
+    let own = format!("X:accel_mm_s2=3000,{SCREW},motor=sgm7j-04a,rotor_kg_m2=0.0001");
+    let ran = with_motor(&shop, &[], &own);
+    assert!(
+        ran.stdout.contains("rotor_kg_m2 = 0.0001\n"),
+        "{}",
+        ran.stdout
+    );
+}
+
+#[test]
+fn the_torque_of_a_motor_limits_what_is_asked_of_it() {
+    let shop = Shop::new();
+    let ran = with_motor(
+        &shop,
+        &["--motor", "sgm7j-04a"],
+        &format!("X:accel_mm_s2=30000,{SCREW}"),
+    );
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let note = "X: 30000 mm/s2 takes 5.640 N m of the motor sgm7j-04a, which has 4.46 at most: the \
+                file has its torque, which limits the acceleration";
+    assert!(ran.stderr.contains(note), "{}", ran.stderr);
+    let curve =
+        "torque_curve = [{ rpm = 0, torque_nm = 4.46 }, { rpm = 6000, torque_nm = 4.46 }]\n";
+    assert!(ran.stdout.contains(curve), "{}", ran.stdout);
+    // A weight of 60 kg and 500 N of friction: 1088 N are 1.73 N·m.
+    let z = format!("Z:accel_mm_s2=300,{SCREW}").replace("coulomb_n=0", "coulomb_n=500");
+    let ran = with_motor(&shop, &["--motor", "hg-kn43"], &z);
+    let note =
+        "Z: friction and weight take 1.732 N m of the motor hg-kn43, which bears 1.3 for ever";
+    assert!(ran.stderr.contains(note), "{}", ran.stderr);
+}
+
+#[test]
+fn motors_that_do_not_go_with_an_axis() {
+    let shop = Shop::new();
+    let refused = |motor: &[&str], axis: &str, message: &str| {
+        let ran = with_motor(&shop, motor, axis);
+        assert_eq!(ran.code, 2, "{}", ran.stdout);
+        assert!(ran.stderr.contains(message), "{}", ran.stderr);
+    };
+    let fast = format!("X:accel_mm_s2=3000,{SCREW}").replace("30000", "70000");
+    refused(
+        &["--motor", "sgm7j-04a"],
+        &fast,
+        "axis `X`: its rapid turns the motor at 7000 rpm, and sgm7j-04a has 6000 at most: at most \
+         rapid_mm_min=60000",
+    );
+    let x = format!("X:accel_mm_s2=3000,{SCREW}");
+    let unknown = "`motor=nema23`: there is no such motor in `gwatt machine motors`; give \
+                   rotor_kg_m2 from its data sheet";
+    refused(&["--motor", "nema23"], &x, unknown);
+    refused(
+        &[],
+        &format!("{x},motor=as1060,motor=as1060"),
+        "`motor` is given twice: keep one of the two",
+    );
+    refused(
+        &[],
+        "X:rapid_mm_min=9000,accel_mm_s2=500,table_kg=5,drive=linear-motor,motor=as1060",
+        "`motor` is one that turns, but the axis has a linear motor",
+    );
+}
+
+#[test]
+fn motors_are_listed_with_their_documents() {
+    let shop = Shop::new();
+    let ran = shop.run(&["machine", "motors"]);
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    for part in [
+        "Yaskawa Sigma II, SGMSH: servo motors of machine tools, 200 V\n",
+        "  sgmsh-20aa          0.000319      6.36      19.1      3000      5000\n",
+        "  as1060                0.0003         5         -         -         -\n",
+        "  from: AS1000, Documented motors\n        https://infosys.beckhoff.com/",
+    ] {
+        assert!(ran.stdout.contains(part), "{part}: {}", ran.stdout);
+    }
+}

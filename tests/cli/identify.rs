@@ -254,3 +254,83 @@ fn a_lead_converts_torque_and_angle() {
     assert!((friction / 40.0 - 1.0).abs() < 0.02, "{friction}");
     assert!(!shop.get("mill.toml").contains("mass_kg = 0."));
 }
+
+/// The data of the page that `identify --html` writes.
+fn page(shop: &Shop, recording: &str, more: &[&str]) -> serde_json::Value {
+    let recording = format!(
+        "{}/examples/recordings/{recording}",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let asked = [
+        "identify", &recording, "--axis", "X", "--html", "x.html", "--json", "x.json",
+    ];
+    let ran = shop.run(&[&asked[..], more].concat());
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let page = shop.get("x.html");
+    assert!(!page.contains("/*"), "a mark is left");
+    let (_, rest) = page.split_once("id=\"data\">").unwrap();
+    let (data, _) = rest.split_once("</script>").unwrap();
+    let data: serde_json::Value = serde_json::from_str(data).unwrap();
+    assert_eq!(format!("{}\n", data["text"].as_str().unwrap()), ran.stdout);
+    data
+}
+
+fn figures(list: &serde_json::Value) -> Vec<f64> {
+    let list = list.as_array().unwrap().iter();
+    list.map(|it| it.as_f64().unwrap_or(f64::NAN)).collect()
+}
+
+#[test]
+fn the_page_of_a_flexible_axis_shows_its_response() {
+    let shop = Shop::new();
+    let data = page(&shop, "flexible-x.csv", &["--model", "flexible"]);
+    let found: serde_json::Value = serde_json::from_str(&shop.get("x.json")).unwrap();
+    assert_eq!(data["word"], found["verdict"]);
+    let [hz, measured] = ["frequency_hz", "gain_db"].map(|key| figures(&data["response"][key]));
+    let model = figures(&data["model"]["gain_db"]);
+    assert_eq!([measured.len(), model.len()], [hz.len(); 2]);
+    // Slow motion: 1/inertia. The anti-resonance is the model's smallest gain there.
+    let slow_db = -20.0 * found["inertia_kg_m2"].as_f64().unwrap().log10();
+    assert!((model[0] - slow_db).abs() < 0.1, "{} {slow_db}", model[0]);
+    let zero_hz = found["zeros"][0]["frequency_hz"].as_f64().unwrap();
+    let below = hz.iter().position(|it| *it > 50.0).unwrap();
+    let least = (0..below)
+        .min_by(|a, b| model[*a].total_cmp(&model[*b]))
+        .unwrap();
+    assert!((hz[least] - zero_hz).abs() < 1.0, "{} {zero_hz}", hz[least]);
+    let coherence = figures(&data["response"]["coherence"]);
+    assert!(coherence.iter().all(|it| (0.0..=1.0 + 1e-9).contains(it)));
+    assert!(data["trace"].is_null());
+}
+
+#[test]
+fn the_page_of_a_rigid_axis_shows_force_over_time() {
+    let shop = Shop::new();
+    let data = page(&shop, "axis-x.csv", &[]);
+    let found: serde_json::Value = serde_json::from_str(&shop.get("x.json")).unwrap();
+    let trace = &data["trace"];
+    let [force, modelled, left] = ["force", "modelled", "left"].map(|key| figures(&trace[key]));
+    assert_eq!([modelled.len(), left.len()], [force.len(); 2]);
+    assert_eq!(figures(&trace["time_s"]).len(), force.len());
+    for (k, left) in left.iter().enumerate() {
+        assert!(
+            (force[k] - modelled[k] - left).abs() < 1e-6 * force[k].abs() + 1e-6,
+            "{k}"
+        );
+    }
+    // What is left by the force is the relative error, but for samples where the axis stands.
+    let norm = |list: &[f64]| list.iter().map(|it| it * it).sum::<f64>().sqrt();
+    let share = norm(&left) / norm(&force);
+    let rel_error = found["rel_error"].as_f64().unwrap();
+    assert!(
+        share > 0.2 * rel_error && share < 5.0 * rel_error,
+        "{share} {rel_error}"
+    );
+    // The model is the mass at all frequencies.
+    let flat_db = -20.0 * found["mass_kg"].as_f64().unwrap().log10();
+    let model = figures(&data["model"]["gain_db"]);
+    assert!(
+        model.iter().all(|it| (it - flat_db).abs() < 1e-5),
+        "{flat_db}"
+    );
+}

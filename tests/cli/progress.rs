@@ -85,6 +85,14 @@ fn a_bar_is_shown_and_taken_away() {
         ("report long.ngc -o rows.csv", "long.ngc, pass "),
         ("limit long.ngc gentle.ngc -o out", "of 2 programs ["),
         ("size gentle.ngc", "size, pass "),
+        (
+            "limit long.ngc gentle.ngc --with-subprograms -o set",
+            "2 programs, pass ",
+        ),
+        (
+            "limit long.ngc --with-subprograms -o one",
+            "long.ngc, pass ",
+        ),
     ] {
         let arguments = format!("{arguments} -m three-axis");
         let bar = format!("{arguments} --progress always");

@@ -24,9 +24,37 @@ fn a_page_of_two_machines_works_in_chromium() {
     works(&desk);
 }
 
-/// `page.mjs` says by itself that it skipped where Chromium or a package is not there.
-fn works(desk: &Desk) {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/html/page.mjs");
+#[test]
+fn a_page_of_a_tuning_works_in_chromium() {
+    let desk = Desk::new();
+    let [x, y] =
+        ["flexible-x.csv", "flexible-y.csv"].map(|it| example(&format!("recordings/{it}")));
+    desk.exits(0, &["tune", &x, &y, "--html", "page.html"]);
+    opens(&desk, "instruments.mjs");
+    desk.exits(0, &["tune", &x, "--html", "page.html"]);
+    opens(&desk, "instruments.mjs");
+}
+
+#[test]
+fn a_page_of_an_identification_works_in_chromium() {
+    let desk = Desk::new();
+    for (recording, model) in [("flexible-x.csv", "flexible"), ("axis-x.csv", "rigid")] {
+        let recording = example(&format!("recordings/{recording}"));
+        let asked = ["--axis", "X", "--model", model, "--html", "page.html"];
+        desk.exits(0, &[&["identify", &recording], &asked[..]].concat());
+        opens(&desk, "instruments.mjs");
+    }
+}
+
+pub(super) fn works(desk: &Desk) {
+    opens(desk, "page.mjs");
+}
+
+/// The script says by itself that it skipped where Chromium or a package is not there.
+fn opens(desk: &Desk, script: &str) {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/html")
+        .join(script);
     let Ok(output) = Command::new("node")
         .arg(script)
         .arg(desk.at("page.html"))

@@ -93,7 +93,7 @@ fn pages_that_cannot_be_are_refused() {
     refused(
         &with(
             "limit",
-            &["--with-subprograms", "-o", "folder", "--html", "a.html"],
+            &["--with-subprograms", "-o", "folder", "--svg", "a.svg"],
         ),
         "cannot be used with",
     );

@@ -86,6 +86,23 @@ async function links(tab, name) {
   expect((await tab.textContent("#details .source code")) === (picked[2] || "no text at hand"), `${name}: its text is not shown`);
   if (moves && bright !== null) await onPath(tab, name, place);
   if (await tab.evaluate(() => COMPARED !== null)) await both(tab, name);
+  if (await tab.evaluate(() => SET !== null)) await programs(tab, name);
+}
+
+/** Programs that were limited together: a link shows the other one, with its own figures. */
+async function programs(tab, name) {
+  const links = await tab.locator("#set-table a").allTextContents();
+  const title = () => tab.textContent("#program");
+  for (let place = links.length - 1; place >= 0; place -= 1) {
+    const row = tab.locator("#set-table tbody tr").nth(place);
+    await tab.evaluate(() => delete document.documentElement.dataset.ready);
+    await row.locator("a").click();
+    await tab.waitForSelector("html[data-ready]");
+    expect(links[place].endsWith(await title()), `${name}: a link shows ${await title()} in place of ${links[place]}`);
+    const peak = await tab.evaluate(() => power(HEAD.before.peak_w));
+    expect((await row.locator("td").nth(1).textContent()) === peak, `${name}: its row has another peak`);
+    expect(await row.evaluate((own) => own.classList.contains("chosen")), `${name}: its row is not marked`);
+  }
 }
 
 /** Two machines: the chart of both draws both lines, in each one's time and block by block. */

@@ -92,6 +92,60 @@ fn friction_alone() {
     }
 }
 
+const TAKES_NOTHING: &str = "with `regen_power_w` of 0 no axis may brake: leave it out where the \
+     capacitors of the bus take what small drives feed back (`capacitance_f` and `bus_max_v` count \
+     that), or give what the supply or its braking resistor takes";
+
+/// 500 kg · 5 m/s² · 0.5 m/s are 1250 W, drawn within 5 kW and then fed back.
+#[test]
+fn what_is_fed_back_is_named() {
+    let rig = Rig {
+        peak_w: 5000.0,
+        converter: "regen_power_w = 0",
+        ..RIG
+    };
+    stopped(
+        rig,
+        "G0 X1000\n",
+        1,
+        "no-solution",
+        "no value of the permitted words brings the 1250 W that are fed back down to the limit of 0 W",
+        TAKES_NOTHING,
+    );
+    // A tenth of a percent of the acceleration is the least, and feeds 1.25 W back.
+    let rig = Rig {
+        peak_w: 5000.0,
+        converter: "regen_power_w = 1",
+        ..ISG
+    };
+    stopped(
+        rig.strategy(Strategy::Accel),
+        "G0 X90000\n",
+        1,
+        "no-solution",
+        "no value of the permitted words brings the 1250 W that are fed back down to the limit of 1.00 W",
+        "`regen_power_w` is what the supply or its braking resistor takes: a larger resistor, or \
+         `credit_regen = true` where other axes on the bus take what one feeds back",
+    );
+}
+
+/// Blended feeds have the bound of their neighbours as well.
+#[test]
+fn what_blended_feeds_feed_back_is_named() {
+    let rig = Rig {
+        peak_w: 5000.0,
+        converter: "regen_power_w = 0",
+        ..RIG
+    };
+    let reasons = rig.reasons("G64\nG1 X400 F30000\nX800\n");
+    let said = reasons[0].message.as_str();
+    assert!(
+        said.contains("that are fed back down to the limit of 0 W"),
+        "{said}"
+    );
+    assert_eq!(reasons[0].help.as_deref(), Some(TAKES_NOTHING));
+}
+
 #[test]
 fn presets() {
     let rig = Rig {

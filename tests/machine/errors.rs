@@ -146,7 +146,7 @@ fn empty_name() {
 #[test]
 fn missing_peak_power() {
     assert_snapshot!(findings(&edited("peak_power_w = 3500", "base_load_w = 0")), @r"
-    line 5, error machine-missing: `peak_power_w` is missing in `converter` / Peak power in W
+    line 5, error machine-missing: `peak_power_w` is missing in `converter` / What the supply of the drives delivers at most, in W: see its data sheet or label
       | [converter]
       | ^^^^^^^^^^^
     ");

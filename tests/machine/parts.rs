@@ -116,6 +116,17 @@ fn other_forms_add_up_too() {
     assert!(machine(&with_x("mass_kg = 900")).mass_parts.is_empty());
 }
 
+/// What moves in an extruder are gears and wheels: nobody asks for a screw.
+#[test]
+fn an_extruder_has_no_screw() {
+    let extruder = "[axes.E]\nkind = \"linear\"\nrapid_mm_min = 3000\naccel_mm_s2 = 5000\n\
+                    moved_mass_kg = 0.1\nrotor_kg_m2 = 0.0000054\nlead_mm = 22.7\n";
+    let text = edited(B, &format!("{B}{extruder}"));
+    assert_eq!(findings(&text), "");
+    // 0.0000054 kg·m² · (2π/0.0227 m)² = 0.41371549 kg.
+    near(axis(&machine(&text), AxisId::E).mass_kg, 0.1 + 0.413_715_49);
+}
+
 #[test]
 fn parts_that_do_not_go_together() {
     assert_snapshot!(findings(&with_x("moved_mass_kg = 300\nlead_mm = 10")), @r"

@@ -37,6 +37,44 @@ fn script(name: &str) -> PathBuf {
         .join(name)
 }
 
+/// Radius and speed of the page's test circle.
+const RADIUS_MM: f64 = 20.0;
+const FEED_MM_MIN: f64 = 3000.0;
+
+/// Out of round, and smaller than programmed, µm, of a circle that has settled, by two gains
+/// and phases.
+fn circle([a, b]: [[f64; 2]; 2]) -> [f64; 2] {
+    let distances: Vec<f64> = (0..720)
+        .map(|k| {
+            let t = TAU * f64::from(k) / 720.0;
+            let x = RADIUS_MM * a[0] * (t + a[1]).cos();
+            let y = RADIUS_MM * b[0] * (t + b[1]).sin();
+            x.hypot(y)
+        })
+        .collect();
+    let most = distances.iter().copied().fold(0.0, f64::max);
+    let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
+    let mean = distances.iter().sum::<f64>() / 720.0;
+    [1e3 * (most - least), 1e3 * (RADIUS_MM - mean)]
+}
+
+/// The circle of a tuning as the page says it, without filters and with them.
+fn circles(tuned: &Tuned) -> [String; 2] {
+    let hz = FEED_MM_MIN / 60.0 / (TAU * RADIUS_MM);
+    let says = |filtered: bool| {
+        let axes = [0, 1].map(|index| {
+            let plain = tuned.axes[index].follows().at_hz(hz);
+            let filter = tuned.correction.at_hz(index, hz);
+            let own = if filtered { plain * filter } else { plain };
+            [own.norm(), own.im.atan2(own.re)]
+        });
+        let [round, smaller] = circle(axes);
+        let word = if smaller < 0.0 { "larger" } else { "smaller" };
+        format!("{round:.2} µm out of round, {:.2} µm {word}", smaller.abs())
+    };
+    [says(false), says(true)]
+}
+
 /// What a script has found: curves were drawn again, what the page saves gwatt
 /// reads, and what the page computes is what gwatt computes.
 fn check(found: &Value) {
@@ -63,6 +101,17 @@ fn check(found: &Value) {
                 .collect()
         })
         .collect();
+    if let Some(said) = found["circle"].as_str() {
+        let [before, after] = circles(&again);
+        assert!(
+            said.contains(&format!(": {before} (grey)")),
+            "{before}: {said}"
+        );
+        assert!(
+            said.contains(&format!("with the filters {after} (green)")),
+            "{after}: {said}"
+        );
+    }
     let mut ours = Vec::new();
     for (axis, filter) in again.axes.iter().zip(&again.correction.filters) {
         for (index, section) in filter.sections.iter().enumerate() {
@@ -101,7 +150,85 @@ fn the_page_computes_redraws_and_saves() {
     crate::evidence::runs();
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
-    check(&serde_json::from_slice(&output.stdout).unwrap());
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    check(&found);
+    roots_come_and_go(&found);
+}
+
+/// Zeros were added and removed, the low-pass taken away and back: each time gwatt reads what is
+/// saved, and designs filters from it.
+fn roots_come_and_go(found: &Value) {
+    let read = |key: &str| Parameters::read(found[key].as_str().unwrap()).unwrap();
+    let designed = |key: &str| {
+        let read = read(key);
+        let wish = Wish {
+            order: read.order,
+            bandwidth_hz: read.bandwidth_hz,
+            no_low_pass: read.no_low_pass,
+            ..wish(Discretization::Matched)
+        };
+        Tuned::new(read.axes, wish, 50.0).unwrap()
+    };
+    assert_eq!(found["zeros"], 3);
+    // Three zeros in the filter of Y: the low-pass has six poles.
+    let added = designed("added");
+    assert_eq!(added.axes[0].zeros.len(), 3);
+    assert_eq!(read("added").order, Some(6));
+    assert_eq!(added.correction.filters[1].numerator.len(), 3);
+    assert!(read("plain").no_low_pass && read("plain").order.is_none());
+    designed("plain");
+    assert_eq!(read("back").order, Some(6));
+    designed("back");
+    let removed = designed("removed");
+    assert_eq!(removed.axes[0].zeros.len(), 1);
+    assert_eq!(removed.axes[0].poles.len(), 2);
+    // Y was measured: how far its model is from that stands below the curves.
+    let apart = found["apart"].as_array().unwrap();
+    assert!(
+        apart.len() == 1 && apart[0].as_str().unwrap().contains(" dB apart"),
+        "{apart:?}"
+    );
+}
+
+/// One axis alone: nothing to compare it with, and the circle has an ideal second axis.
+#[test]
+fn a_page_of_one_axis() {
+    let shown = tuned(
+        vec![axis('X', &[(40.0, 0.03)])],
+        wish(Discretization::Matched),
+    );
+    let mut page = Vec::new();
+    tune_page(&shown, &mut page).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("page.html");
+    fs::write(&path, page).unwrap();
+    let ran = Command::new("node")
+        .arg(script("one_axis.js"))
+        .arg(&path)
+        .output();
+    let Ok(output) = ran else {
+        crate::evidence::cannot_run("there is no node");
+        return;
+    };
+    crate::evidence::runs();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["headline"], "How X answers");
+    let circle = found["circle"].as_str().unwrap();
+    assert!(
+        circle.starts_with("X with an ideal axis, 0.40 turns a second: "),
+        "{circle}"
+    );
+    // The gain of X is 1 − (0.398/40)² = 1 − 0.0000990, so that its 40 mm of travel are 3.96 µm
+    // short: 1.98 µm of radius at the ends of X, none at those of Y, 0.99 µm on the whole.
+    assert!(circle.contains("0.99 µm smaller (grey)"), "{circle}");
+    let note = found["note"].as_str().unwrap();
+    assert!(
+        note.contains("A filter has the zeros of the other axes"),
+        "{note}"
+    );
+    Parameters::read(found["toml"].as_str().unwrap()).unwrap();
 }
 
 /// The page in a browser, wide and narrow.

@@ -12,6 +12,7 @@ use super::friction::{Solved, Terms, inertial, left_above, left_of, solve_best};
 use super::noise::Whiteness;
 use super::recording::Recording;
 use super::rigidity::resonates;
+use super::spectrum::{FrequencyResponse, measure};
 
 pub use super::friction::Friction;
 
@@ -255,6 +256,58 @@ fn sums(all: &[Equations], terms: Terms, theta: &[f64]) -> [f64; 2] {
 ///
 /// When that recording cannot be used.
 pub fn predict_error(rigid: &Rigid, other: &Recording) -> Outcome<f64> {
+    let (equations, theta) = settled(rigid, other)?;
+    let [left, all] = left_of(&equations, rigid.terms, &theta);
+    Ok((left / all).sqrt())
+}
+
+/// The force of a recording and that of a fitted axis, after the common filter.
+#[derive(Debug, Clone)]
+pub struct Trace {
+    /// Distance of samples, s.
+    pub step_s: f64,
+    /// The recorded force, N or N·m.
+    pub force: Vec<f64>,
+    /// That of the model.
+    pub modelled: Vec<f64>,
+    /// Which samples count: those where the axis moves.
+    pub counts: Vec<bool>,
+    /// From the recorded force without the model's friction to the acceleration; `None` for a
+    /// short recording.
+    pub response: Option<FrequencyResponse>,
+}
+
+/// Lays a fitted axis over a recording of it.
+///
+/// # Errors
+///
+/// When that recording cannot be used.
+pub fn trace(rigid: &Rigid, recording: &Recording) -> Outcome<Trace> {
+    let (equations, theta) = settled(rigid, recording)?;
+    let without_friction = inertial(&equations, rigid.terms, &theta);
+    let band = &equations.inside;
+    let mass = theta.first().copied().unwrap_or_default();
+    let samples = band.force.iter().zip(&without_friction);
+    let modelled = samples
+        .zip(&band.acceleration)
+        .map(|((force, inertial), accel)| force - inertial + mass * accel);
+    Ok(Trace {
+        step_s: equations.step_s,
+        modelled: modelled.collect(),
+        response: measure(
+            &without_friction,
+            &band.acceleration,
+            None,
+            equations.step_s,
+            None,
+        ),
+        force: equations.inside.force,
+        counts: equations.counts,
+    })
+}
+
+/// The equations of another recording, and the unknowns with those that it has alone.
+fn settled(rigid: &Rigid, other: &Recording) -> Outcome<(Equations, Vec<f64>)> {
     let mut equations = Equations::of(other, rigid.bandwidth_hz)?;
     if equations.inside.speeds.is_some() == (rigid.terms == Terms::Offset) {
         return Err(IdentifyError::new(
@@ -284,6 +337,5 @@ pub fn predict_error(rigid: &Rigid, other: &Recording) -> Outcome<f64> {
             "record as much motion as in the first",
         )
     })?;
-    let [left, all] = left_of(&equations, rigid.terms, &theta);
-    Ok((left / all).sqrt())
+    Ok((equations, theta))
 }

@@ -13,7 +13,8 @@ pub(crate) fn core(found: &mut Found, log: &mut Log, place: &Place<'_>, whole: &
         "{}: two motors move two axes together. Their energy is that of the axes if each of the two \
          has the rotors of both motors. What each motor draws differs from what each axis draws: with \
          the larger mass for both axes straight moves from rest draw the same; at corners and on arcs \
-         a motor may drive while the other brakes. Keep a margin for that, or measure.",
+         a motor may drive while the other brakes. With speed, acceleration, mass and friction alike \
+         in both axes, --certificate robust covers what the motors draw; else keep a margin.",
         place.source(whole)
     ));
     log.warning(

@@ -125,7 +125,7 @@ fn what_is_missing_is_named() {
         .map(|it| format!("{} / {}", it.message, it.help.as_deref().unwrap_or("")))
         .collect();
     assert_snapshot!(said.join("\n"), @r"
-    `peak_power_w` is missing in `converter` / Peak power in W
+    `peak_power_w` is missing in `converter` / What the supply of the drives delivers at most, in W: see its data sheet or label
     axis X needs a mass or an inertia / give `moved_mass_kg` with `rotor_kg_m2` and `screw`, `pulley` or `pinion`; or all of it as `mass_kg` at the load or `inertia_kg_m2` at the motor
     axis Y needs a mass or an inertia / give `moved_mass_kg` with `rotor_kg_m2` and `screw`, `pulley` or `pinion`; or all of it as `mass_kg` at the load or `inertia_kg_m2` at the motor
     axis Z needs a mass or an inertia / give `moved_mass_kg` with `rotor_kg_m2` and `screw`, `pulley` or `pinion`; or all of it as `mass_kg` at the load or `inertia_kg_m2` at the motor

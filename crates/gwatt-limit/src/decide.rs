@@ -6,7 +6,6 @@ use super::law;
 use super::lever::{Levers, Obstacle, levers};
 use super::optimum;
 use super::options::{Law, Strategy};
-use super::refusal::too_much;
 use super::solver::Solver;
 use gwatt_motion::{Move, MoveKind};
 use gwatt_power::Assessment;
@@ -84,7 +83,7 @@ impl Solver<'_> {
     ) -> Result<Change, Obstacle> {
         let lever = levers.speed.ok_or_else(|| self.no_speed_lever(case))?;
         self.speed(case, lever, &Change::default())
-            .ok_or_else(|| too_much(case))
+            .ok_or_else(|| self.too_much(case))
     }
 
     pub(super) fn by_accel(&self, case: Case<'_>, levers: &Levers) -> Result<Change, Obstacle> {
@@ -104,7 +103,7 @@ impl Solver<'_> {
             return Ok(change);
         }
         let Some(load) = self.cruise_load(case).filter(|load| *load > 1.0) else {
-            return Err(too_much(case));
+            return Err(self.too_much(case));
         };
         Err(Obstacle::new(
             "friction-alone",
@@ -141,13 +140,15 @@ impl Solver<'_> {
                 jerk,
                 ..
             } if accel.or(jerk).is_some() => {
-                optimum::best_pair(self, case, speed, levers).ok_or_else(|| too_much(case))
+                optimum::best_pair(self, case, speed, levers).ok_or_else(|| self.too_much(case))
             }
             Levers { speed: Some(_), .. } => self.by_speed(case, levers),
             Levers { accel: Some(_), .. } => self.by_accel_word(case, levers),
             Levers {
                 jerk: Some(knob), ..
-            } => self.jerk_alone(case, knob).ok_or_else(|| too_much(case)),
+            } => self
+                .jerk_alone(case, knob)
+                .ok_or_else(|| self.too_much(case)),
             _ => Err(self.no_speed_lever(case)),
         }
     }

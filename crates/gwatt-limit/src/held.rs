@@ -53,7 +53,7 @@ impl Solver<'_> {
             }
         }
         if change == *with {
-            return Err(super::refusal::too_much(case));
+            return Err(self.too_much(case));
         }
         self.respect_floor(case, &change)?;
         Ok(change)

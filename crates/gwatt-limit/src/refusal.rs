@@ -110,6 +110,52 @@ impl Solver<'_> {
         }
     }
 
+    /// No value helps. What is too much is named: what is drawn, or what is fed back.
+    pub(super) fn too_much(&self, case: Case<'_>) -> Obstacle {
+        let back = self.back_limit_w(case);
+        if let Some(limit_w) = back.filter(|it| self.is_more_back(case, *it)) {
+            return fed_back(case, limit_w);
+        }
+        Obstacle::new(
+            "no-solution",
+            format!(
+                "no value of the permitted words brings {:.0} W down to the limit",
+                case.assessment.demand.peak_w
+            ),
+            "base load and friction leave too little: a larger converter, or another strategy",
+        )
+    }
+
+    /// No value helps a block that the control blends with its neighbours.
+    pub(super) fn no_value_for_all(&self, case: Case<'_>) -> Obstacle {
+        if let Some(limit_w) = self.back_limit_w(case).filter(|it| *it <= 0.0)
+            && self.is_more_back(case, limit_w)
+        {
+            return fed_back(case, limit_w);
+        }
+        let help = "a word for acceleration, or path.mode = \"exact-stop\" if the machine stops \
+                    at every block";
+        let message = "no value of the permitted words brings this block and its neighbours down \
+                       to the limit";
+        let feed = if self.how.allowed.feed {
+            ""
+        } else {
+            "--allow feed, "
+        };
+        Obstacle::new("no-solution", message, format!("{feed}{help}"))
+    }
+
+    fn back_limit_w(&self, case: Case<'_>) -> Option<f64> {
+        self.model.regen_limit_w(case.assessment.demand.converter)
+    }
+
+    /// Whether a move exceeds what may be fed back, and by more than what may be drawn.
+    fn is_more_back(&self, case: Case<'_>, limit_w: f64) -> bool {
+        let demand = &case.assessment.demand;
+        let drawn = demand.peak_w / self.model.limit_w(demand.converter);
+        demand.regen_w > limit_w * drawn.max(1.0)
+    }
+
     pub(super) fn no_accel_lever(&self, case: Case<'_>) -> Obstacle {
         if !case.permit.edit {
             let message = format!("the block may not be changed: {}", case.permit.reason);
@@ -123,24 +169,34 @@ impl Solver<'_> {
     }
 }
 
-/// No value helps.
-pub(super) fn too_much(case: Case<'_>) -> Obstacle {
-    Obstacle::new(
-        "no-solution",
-        format!(
-            "no value of the permitted words brings {:.0} W down to the limit",
-            case.assessment.demand.peak_w
-        ),
-        "base load and friction leave too little: a larger converter, or another strategy",
-    )
+/// No value brings down what is fed back.
+fn fed_back(case: Case<'_>, limit_w: f64) -> Obstacle {
+    let message = format!(
+        "no value of the permitted words brings the {} W that are fed back down to the limit of \
+         {} W",
+        figure(case.assessment.demand.regen_w),
+        figure(limit_w)
+    );
+    Obstacle::new("no-solution", message, back_help(limit_w))
 }
 
-/// No value helps a block that the control blends with its neighbours.
-pub(super) fn no_value_for_all(allowed: Allowed) -> Obstacle {
-    let help = "a word for acceleration, or path.mode = \"exact-stop\" if the machine stops at \
-                every block";
-    let message = "no value of the permitted words brings this block and its neighbours down to \
-                   the limit";
-    let feed = if allowed.feed { "" } else { "--allow feed, " };
-    Obstacle::new("no-solution", message, format!("{feed}{help}"))
+/// A power in W with the digits that distinguish it from 0.
+fn figure(power_w: f64) -> String {
+    if power_w == 0.0 || power_w >= 10.0 {
+        format!("{power_w:.0}")
+    } else {
+        format!("{power_w:.2}")
+    }
+}
+
+/// What can be done where too much is fed back.
+fn back_help(limit_w: f64) -> &'static str {
+    if limit_w <= 0.0 {
+        "with `regen_power_w` of 0 no axis may brake: leave it out where the capacitors of the \
+         bus take what small drives feed back (`capacitance_f` and `bus_max_v` count that), or \
+         give what the supply or its braking resistor takes"
+    } else {
+        "`regen_power_w` is what the supply or its braking resistor takes: a larger resistor, or \
+         `credit_regen = true` where other axes on the bus take what one feeds back"
+    }
 }

@@ -16,7 +16,6 @@ use super::law;
 use super::level;
 use super::lever::{Levers, Obstacle, SpeedLever, levers};
 use super::options::{Law, Strategy};
-use super::refusal::no_value_for_all;
 use super::root::largest;
 use super::slot::{Outcome, Slot};
 use super::solver::Solver;
@@ -403,6 +402,6 @@ fn time(solver: &Solver<'_>, slots: &VecDeque<Slot>, window: &Window<'_>) -> f64
 fn obstacle(solver: &Solver<'_>, case: Case<'_>) -> Obstacle {
     match solver.solve(case.mv, case.assessment, case.permit, Ends::Rest) {
         Err(obstacle) if obstacle.rule != "no-solution" => obstacle,
-        _ => no_value_for_all(solver.how.allowed),
+        _ => solver.no_value_for_all(case),
     }
 }

@@ -63,6 +63,19 @@ const CONTROLLERS: &[Builtin] = builtins!("controllers/":
     "okuma-lathe",
 );
 
+const MOTORS: &[Builtin] = builtins!("motors/":
+    "yaskawa-sgm7j",
+    "yaskawa-sgmsh",
+    "mitsubishi-hg-kn",
+    "beckhoff-as1000",
+    "sanyo-ss242",
+);
+
+/// Files of motors, one a document: see [`crate::motors()`].
+pub(crate) fn motor_files() -> &'static [Builtin] {
+    MOTORS
+}
+
 /// All built-in machines, the default first.
 #[must_use]
 pub fn machines() -> &'static [Builtin] {

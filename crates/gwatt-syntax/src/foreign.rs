@@ -108,6 +108,9 @@ pub fn foreign(bytes: &[u8]) -> Option<Foreign> {
             help: "only programs of G-code words are read: have it posted as DIN/ISO",
         });
     }
+    if let Some(settings) = settings(lines.clone()) {
+        return Some(settings);
+    }
     // IGES: the 73rd column of its first line names the section S.
     let first = lines.clone().next().unwrap_or_default();
     if first.len() >= 73 && first.get(72) == Some(&b'S') && first.ends_with(b"1") {
@@ -127,6 +130,22 @@ pub fn foreign(bytes: &[u8]) -> Option<Foreign> {
         });
     }
     None
+}
+
+/// Files that go with a machine and are given in place of its programs.
+fn settings<'a>(lines: impl Iterator<Item = &'a [u8]> + Clone) -> Option<Foreign> {
+    let has = |wanted: fn(&[u8]) -> bool| lines.clone().any(wanted);
+    if has(|line| line.starts_with(b"schema =")) && has(|line| line.starts_with(b"[converter]")) {
+        return Some(Foreign {
+            what: "a machine file",
+            help: "it goes after -m; give a part program here",
+        });
+    }
+    let of_control = |line: &[u8]| matches!(line, b"[printer]" | b"[EMC]" | b"[TRAJ]");
+    has(of_control).then_some(Foreign {
+        what: "a file of settings (Klipper, LinuxCNC)",
+        help: "`gwatt machine import` makes a machine file of it; give a part program here",
+    })
 }
 
 /// `<svg`, with or without a declaration of XML before it.
@@ -182,6 +201,12 @@ mod tests {
         assert_eq!(what(&stl), Some("an STL model"));
         let iges = format!("{:72}S      1\n", "a plate");
         assert_eq!(what(iges.as_bytes()), Some("an IGES model"));
+        let machine = b"# A mill\nschema = 1\nname = \"mill\"\n[converter]\n";
+        assert_eq!(what(machine), Some("a machine file"));
+        for control in [&b"[include a.cfg]\n[printer]\n"[..], b"; my mill\n[EMC]\n"] {
+            let settings = Some("a file of settings (Klipper, LinuxCNC)");
+            assert_eq!(what(control), settings);
+        }
         for program in [&b"%\nO1\nG0 X0\n"[..], b"(BEGIN PGM)\nG1", b"0\nG1", b""] {
             assert_eq!(what(program), None);
         }

@@ -11,7 +11,7 @@ use crate::diagnostic::Diagnostic;
 use crate::interpret::Shelf;
 use crate::machine::Machine;
 use crate::pipeline::executor::Executor;
-use crate::pipeline::{Failure, Options};
+use crate::pipeline::{Failure, LineCount, Options};
 
 /// The files of a set.
 pub(super) struct Found {
@@ -35,6 +35,8 @@ pub(super) fn discover(
         }
         shelf.put(&program.path, &program.name, Arc::clone(&program.text));
     }
+    let counts = || programs.iter().filter_map(|it| it.options.count.as_ref());
+    counts().for_each(LineCount::begin);
     let mut called = Vec::with_capacity(programs.len());
     for (place, (program, ways)) in programs.iter().zip(ways).enumerate() {
         let mut own = BTreeSet::new();
@@ -51,6 +53,7 @@ pub(super) fn discover(
         let message = format!("there are more than {} files", Shelf::FILES_MAX);
         return Err(Failure::Unsuitable(message).into());
     }
+    counts().for_each(LineCount::first_pass_ends);
     Ok(Found {
         shelf: Arc::new(shelf),
         called,

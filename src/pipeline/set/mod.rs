@@ -16,6 +16,7 @@ use super::strategy::{check_strategy, trusting};
 use super::ways::{has_ways, ways};
 use super::{Failure, LimitOptions, LimitSummary, Options, RestartRows};
 use crate::diagnostic::Severity;
+use crate::interpret::Shelf;
 use crate::machine::Machine;
 use discover::discover;
 use rounds::Job;
@@ -68,6 +69,21 @@ impl SetSummary {
     pub fn slower(&self) -> bool {
         let mut programs = self.programs.iter();
         programs.all(|program| program.certified || program.slower)
+    }
+
+    /// How a program is read together with all files as they are written.
+    #[must_use]
+    pub fn options_after(&self, programs: &[SetProgram], place: usize) -> Options {
+        let mut shelf = Shelf::default();
+        for file in &self.files {
+            shelf.put(&file.path, &file.name, file.text.as_slice());
+        }
+        let mut options = programs
+            .get(place)
+            .map_or_else(Options::default, |it| it.options.clone());
+        options.reading.shelf = Some(Arc::new(shelf));
+        options.reading.text = place as u16;
+        options
     }
 }
 

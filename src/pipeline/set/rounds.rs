@@ -209,6 +209,7 @@ impl<'a> Job<'a> {
     ) -> Option<OfProgram<'r>> {
         let own = &self.programs.get(number)?.name;
         let rows = rows.as_mut()?;
+        rows.begin_program(number);
         Some(OfProgram {
             rows: &mut **rows,
             own,

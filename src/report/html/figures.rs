@@ -62,7 +62,7 @@ pub(super) fn head(page: &Page<'_>) -> Value {
 }
 
 /// The verdict in words.
-fn word(page: &Page<'_>) -> &'static str {
+pub(super) fn word(page: &Page<'_>) -> &'static str {
     match page.found {
         Found::Report(summary) if summary.only_subprograms() => "only subprograms",
         Found::Report(summary) if summary.fits() => "fits",
@@ -78,7 +78,8 @@ fn word(page: &Page<'_>) -> &'static str {
     }
 }
 
-fn fits(page: &Page<'_>) -> bool {
+/// Whether that is good.
+pub(super) fn fits(page: &Page<'_>) -> bool {
     match page.found {
         Found::Report(summary) => summary.fits(),
         Found::Limit { summary, .. } => summary.certified,

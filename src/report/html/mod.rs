@@ -18,10 +18,12 @@ mod path;
 mod peaks;
 mod picture;
 mod rows;
+mod set_page;
 mod shares;
 mod shown;
 
 pub use lines::LineTexts;
 pub use rows::PageRows;
+pub use set_page::SetPage;
 pub use shares::{PageSeries, Side};
 pub use shown::{Compared, Found, Page};

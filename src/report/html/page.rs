@@ -5,6 +5,8 @@
 
 use std::io::{self, Write};
 
+use serde_json::Value;
+
 use super::data::data;
 use super::picture;
 use super::shown::Page;
@@ -29,31 +31,23 @@ const SCRIPTS: [&str; 6] = [
     include_str!("page/page.js"),
 ];
 
+/// Where the data of a page stand.
+const DATA: &str = "/*DATA*/";
+
 impl Page<'_> {
     /// Writes the page.
     ///
     /// # Errors
     /// Those of `out`.
     pub fn write_html(&self, out: &mut dyn Write) -> io::Result<()> {
-        let data = harmless(&data(self).to_string());
-        let (licences, scripts) = (LICENCES.concat(), SCRIPTS.concat());
-        let mut rest = PAGE;
-        for (mark, text) in [
-            ("/*LICENCES*/", licences.as_str()),
-            ("/*CHART_STYLE*/", CHART_STYLE),
-            ("/*STYLE*/", STYLE),
-            ("/*DATA*/", data.as_str()),
-            ("/*CHART*/", CHART),
-            ("/*SPACE*/", SPACE),
-            ("/*SCRIPT*/", scripts.as_str()),
-        ] {
-            if let Some((before, after)) = rest.split_once(mark) {
-                out.write_all(before.as_bytes())?;
-                out.write_all(text.trim_end().as_bytes())?;
-                rest = after;
-            }
-        }
-        out.write_all(rest.as_bytes())
+        begin(out)?;
+        self.write_data("data", out)?;
+        end(out)
+    }
+
+    /// Its data, as an element of that name.
+    pub(super) fn write_data(&self, id: &str, out: &mut dyn Write) -> io::Result<()> {
+        element(id, &data(self), out)
     }
 
     /// Writes the power over time as a still picture (SVG).
@@ -63,6 +57,46 @@ impl Page<'_> {
     pub fn write_svg(&self, out: &mut dyn Write) -> io::Result<()> {
         picture::write(self, out)
     }
+}
+
+/// The part of a page before the data.
+pub(super) fn begin(out: &mut dyn Write) -> io::Result<()> {
+    template(PAGE.split_once(DATA).map_or(PAGE, |it| it.0), out)
+}
+
+/// The part of a page after the data.
+pub(super) fn end(out: &mut dyn Write) -> io::Result<()> {
+    template(PAGE.split_once(DATA).map_or("", |it| it.1), out)
+}
+
+/// Data that the script finds by their name.
+pub(super) fn element(id: &str, data: &Value, out: &mut dyn Write) -> io::Result<()> {
+    let json = harmless(&data.to_string());
+    write!(
+        out,
+        "<script type=\"application/json\" id=\"{id}\">{json}</script>"
+    )
+}
+
+/// A part of a page, with styles and scripts in place of their marks.
+fn template(part: &str, out: &mut dyn Write) -> io::Result<()> {
+    let (licences, scripts) = (LICENCES.concat(), SCRIPTS.concat());
+    let mut rest = part;
+    for (mark, text) in [
+        ("/*LICENCES*/", licences.as_str()),
+        ("/*CHART_STYLE*/", CHART_STYLE),
+        ("/*STYLE*/", STYLE),
+        ("/*CHART*/", CHART),
+        ("/*SPACE*/", SPACE),
+        ("/*SCRIPT*/", scripts.as_str()),
+    ] {
+        if let Some((before, after)) = rest.split_once(mark) {
+            out.write_all(before.as_bytes())?;
+            out.write_all(text.trim_end().as_bytes())?;
+            rest = after;
+        }
+    }
+    out.write_all(rest.as_bytes())
 }
 
 /// JSON in which no tag can begin or end.

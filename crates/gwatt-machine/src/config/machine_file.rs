@@ -77,7 +77,7 @@ pub(crate) struct ConverterTable {
     pub(crate) name: Option<At<String>>,
     /// The axes it feeds; required if there are several converters.
     pub(crate) axes: Option<At<Vec<At<Letter>>>>,
-    /// Peak power in W.
+    /// What the supply of the drives delivers at most, in W: see its data sheet or label.
     #[schemars(required)]
     pub(crate) peak_power_w: Option<Positive>,
     /// Largest power that may be fed back in W; absent: no limit.

@@ -139,6 +139,9 @@ pub(crate) fn check(findings: &mut Findings<'_>, letter: char, kind: AxisKind, t
     needs_rotor(findings, letter, kind, table);
 }
 
+/// The letter of extruders.
+const EXTRUDER: char = 'E';
+
 /// What slides is not all: the rotor often is the larger part.
 fn needs_rotor(findings: &mut Findings<'_>, letter: char, kind: AxisKind, table: &AxisTable) {
     fn span<B>(number: Option<&Num<B>>) -> Option<std::ops::Range<usize>> {
@@ -160,6 +163,8 @@ fn needs_rotor(findings: &mut Findings<'_>, letter: char, kind: AxisKind, table:
         findings.error("machine-missing", &moved, message, Some(help.to_owned()));
     }
     let turns = table.screw.is_some() || table.pulley.is_some() || table.pinion.is_some();
+    // The gears and wheels of an extruder are what moves there: no screw is to be given.
+    let turns = turns || letter == EXTRUDER;
     if let Some(lead) = table
         .lead_mm
         .as_ref()

@@ -1,6 +1,10 @@
 // What the page shows, and how it is put into words.
 "use strict";
-const DATA = JSON.parse(document.getElementById("data").textContent);
+/** Programs that were limited together, or null. */
+const SET = JSON.parse(document.getElementById("set-data")?.textContent ?? "null");
+/** Which of them is shown: the end of the address has its place from 1. */
+const CHOSEN = SET ? Math.min(SET.programs.length, Math.max(1, Number(/^#program=(\d+)$/.exec(location.hash)?.[1] ?? 1))) - 1 : 0;
+const DATA = JSON.parse(document.getElementById(CHOSEN > 0 ? `data-${CHOSEN}` : "data").textContent);
 const { head: HEAD, blocks: BLOCKS, bars: BARS, path: PATH, channels: CHANNELS } = DATA;
 const LIMITED = HEAD.limited !== null;
 /** Two machines, with their names, or null. */

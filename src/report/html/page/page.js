@@ -79,6 +79,7 @@ function start() {
   element("verdict").textContent = HEAD.word;
   element("verdict").className = HEAD.fits ? "fits" : "misses";
   element("made").textContent = `Made by gwatt ${HEAD.gwatt}. Charts: uPlot (MIT). Path: three.js (MIT).`;
+  programs();
   tiles();
   drawCharts();
   peakTables();

@@ -21,6 +21,28 @@ function picker(own) {
 
 const tile = (name, value, ...more) => make("div", {}, make("dt", {}, name), make("dd", {}, make("strong", {}, value), ...more));
 
+/** The programs of a set, of which one is shown at a time. */
+function programs() {
+  if (!SET) return;
+  const fitting = SET.programs.filter((it) => it.fits).length;
+  element("set").hidden = false;
+  element("set-title").textContent = `${SET.programs.length} programs, limited together: ${fitting} fit`;
+  const number = (text) => make("td", { class: "number" }, text);
+  const rows = SET.programs.map((it, place) => {
+    const link = make("a", { href: `#program=${place + 1}`, "aria-current": place === CHOSEN ? "true" : null }, it.program);
+    const row = make("tr", {}, make("th", { scope: "row" }, link), make("td", { class: it.fits ? "" : "over" }, it.word),
+      number(power(it.peak_w[0])), number(power(it.peak_w[1])), number(duration(it.duration_s[0])), number(duration(it.duration_s[1])), number(`${it.unfit_count[0]} → ${it.unfit_count[1]}`));
+    row.classList.toggle("chosen", place === CHOSEN);
+    return row;
+  });
+  const names = ["Program", "", "Peak", "after", "Time", "after", "Over the limit"];
+  element("set-table").append(table("Programs: choose one to see it below", names, rows));
+  const files = SET.files.map(([name, lines]) => `${name} (${lines === 0 ? "as it was" : `${lines} ${lines === 1 ? "line" : "lines"} edited`})`);
+  const fate = SET.written ? "" : "Nothing is written, since not all of them fit. ";
+  element("set-note").textContent = fate + (files.length > 0 ? `Files of subprograms: ${files.join(", ")}. A line that several programs run gets what is right for all of them.` : "No files of subprograms are called.");
+  addEventListener("hashchange", () => location.reload());
+}
+
 /** The figures of two machines, as in the text of the comparison. */
 function compared() {
   const { before, after } = HEAD;
