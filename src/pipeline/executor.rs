@@ -125,9 +125,6 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
             return Ok(None);
         };
         self.lines = number;
-        if number.is_multiple_of(LineCount::AT_ONCE) {
-            self.count(LineCount::AT_ONCE);
-        }
         scan_line(text, number == 1, &mut self.block);
         self.steps.clear();
         self.interpreter.execute(
@@ -137,6 +134,9 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
             Effects::new(&mut self.steps, &mut self.facts, &mut self.diagnostics),
         );
         self.executed += u64::from(self.facts.executed);
+        if number.is_multiple_of(LineCount::AT_ONCE) {
+            self.count(LineCount::AT_ONCE);
+        }
         if self.facts.transfers {
             return self.begin_flow();
         }
