@@ -112,9 +112,9 @@ fn machine_coordinates() {
         "G71 G90 G60 G54\nG0 Z1\nSUPA G0 Z2\nSUPA G0 Z3\nG0 Z1\nG75 Z1=0\nG75 FP=2 Z1=0\nM30\n";
     let unknown = shop("siemens", "", "");
     assert_eq!(full(&unknown, program, ""), [3, 5, 6, 7]);
-    let known = "[offsets]\nG54 = { Z = 1 }";
-    let known = shop("siemens", known, "further_reference_mm = [2, 3]");
-    assert_eq!(full(&known, program, ""), NONE);
+    // Its work offsets are not followed; from one fixed point to another all is known.
+    let known = shop("siemens", "", "further_reference_mm = [2, 3]");
+    assert_eq!(full(&known, program, ""), [3, 5, 6]);
 }
 
 /// Printers move by differences: their homing says where they are.

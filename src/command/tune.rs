@@ -10,7 +10,7 @@ use gwatt::identify::response_table::ResponseFigures;
 use gwatt::identify::tune::{
     AxisResponse, Discretization, Parameters, Tuned, Wish, excited, of_recording,
 };
-use gwatt::identify::{Given, Judgement, Recording};
+use gwatt::identify::{Given, IdentifyError, Judgement, Recording};
 use gwatt::machine::AxisId;
 use gwatt::report::{Verdict, sections_csv, tune_page, tuned_json, tuned_text};
 use rayon::prelude::*;
@@ -76,6 +76,13 @@ pub fn run(args: &TuneArgs, terminal: Terminal) -> Result<Verdict> {
         .band_hz
         .or(parameters.as_ref().and_then(|p| p.band_hz))
         .unwrap_or(BAND_HZ);
+    if axes.len() == 1 && args.html.is_none() {
+        let error = IdentifyError::new(
+            "one axis alone has nothing to be like",
+            "give a recording of each axis that moves along the path, or --html for a page of this one",
+        );
+        return Err(error.into());
+    }
     let tuned = Tuned::new(axes, wish(args, parameters.as_ref()), band_hz)?;
     deliver(args, &tuned, terminal)
 }

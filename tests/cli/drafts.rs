@@ -298,7 +298,7 @@ fn a_motor_of_the_catalogue_gives_its_rotor() {
     assert_eq!(ran.code, 0, "{}", ran.stderr);
     for part in [
         "# Motor sgm7j-04a (Yaskawa): 1.27 N m, for a moment 4.46 N m, up to 6000 rpm. From: Sigma-7",
-        "rotor_kg_m2 = 0.0000486     # of the motor; coupling and brake come on top\n",
+        "rotor_kg_m2 = 0.0000486      # of the motor; coupling and brake come on top\n",
         "118.1 kg = 60 moved mass + 19.19 rotor (0.0000486 kg m2) + 38.94 screw",
     ] {
         assert!(ran.stdout.contains(part), "{part}: {}", ran.stdout);

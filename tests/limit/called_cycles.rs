@@ -33,11 +33,11 @@ fn stays(program: &str, options: &str) -> String {
 const HOLES: &str = "G17 G54 G90 G60 F200\nG0 X0 Y0 Z50\nN30 MCALL CYCLE81(50,0,2,-10) ; 6H7\n\
                      N40 X200 Y150\nN50 X0 Y0\nN60 MCALL\nG0 Z100\nM30\n";
 
-/// 1.1 kW is enough for one axis, not for two: the ways between the holes are gone more slowly,
+/// 800 W are enough for one axis, not for two: the ways between the holes are gone more slowly,
 /// and the cycle is called at each place.
 #[test]
 fn the_way_from_hole_to_hole() {
-    assert_snapshot!(limited(1200.0, HOLES, ""), @"");
+    assert_snapshot!(limited(800.0, HOLES, ""), @"");
 }
 
 /// With `--allow expand` the moves of the cycle stand there, and a comment names it.

@@ -281,7 +281,7 @@ fn rapids_from_an_unknown_start() {
          --tool-table); or write the move as a feed by hand",
     );
     // One axis moves on a line, at an F that is no faster wherever it starts: 1 kW of 2.5 kW.
-    assert_eq!(rig.fits("G0 X400\nX0\n"), "");
+    assert_eq!(rig.fits("G0 X400\nX0\n"), "G1 X400 F24000\nX0\nG0\n");
     // Feeds may be lowered, and what follows starts where it is known.
     assert_eq!(
         rig.fits("G1 X400 F30000\nG0 X0\n"),

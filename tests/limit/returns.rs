@@ -204,17 +204,17 @@ fn random_programs_return_to_the_same_places() {
 #[test]
 fn reasons_show_the_block_that_returns() {
     let independent = PLACES.replace("[offsets]", "rapid = \"independent\"\n[offsets]");
-    let shop = shop("fanuc", &independent, "reference_mm = 0");
+    let shop = shop("fanuc", &independent, "reference_mm = 50");
     let machine = shop.get("mill.toml");
     shop.put("mill.toml", &machine.replace("rapid = \"linear\"\n", ""));
-    let program = "G21 G90 G94 G54\nG0 X1 Y1\nG91 G28 X0 Y0\nG90\nM30\n";
+    let program = "G21 G90 G94 G54\nG91 G28 X0 Y0\nG90\nM30\n";
     let (code, out, errors) = limited(&shop, program, "--allow feed -o out.nc");
     assert_eq!(code, 1, "{errors}");
     assert!(
-        errors.contains("its axes move each for itself") && errors.contains("a.nc:3:1\n"),
+        errors.contains("its axes move each for itself") && errors.contains("a.nc:2:1\n"),
         "{errors}"
     );
     let all = format!("{out}{errors}");
-    assert!(all.contains("3 | G91 G28 X0 Y0\n"), "{all}");
+    assert!(all.contains("2 | G91 G28 X0 Y0\n"), "{all}");
     assert!(!all.contains("G0 X"), "{all}");
 }

@@ -66,7 +66,7 @@ const TWO: [&str; 21] = [
     "M62 P0 F8000",
     "M70\nF3000\nM72",
 ];
-const STOP: [&str; 29] = [
+const STOP: [&str; 28] = [
     "M52 P0",
     "M64 P0",
     "M65 P0",

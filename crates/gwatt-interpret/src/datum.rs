@@ -112,6 +112,12 @@ impl Datums {
         }
     }
 
+    /// An axis is at home: its coordinates are those of the machine.
+    pub(super) fn home(&mut self, axis: usize) {
+        self.places[axis] = Datum::Machine;
+        self.set_here[axis] = None;
+    }
+
     /// No coordinates are set any more.
     pub(super) fn forget_set(&mut self) {
         self.set_here = Default::default();

@@ -7,7 +7,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::datum::{Datum, Datums};
+use super::datum::Datums;
 use super::flow::limits::Limits;
 use super::frame::Frame;
 use super::given::GivenVariable;
@@ -207,7 +207,7 @@ impl Position {
         self.at[axis] = at_mm;
         self.change(|offsets| offsets.set_g92(axis, 0.0));
         self.unknown.0 &= !(1 << axis);
-        self.datums.place(axis, Datum::Machine);
+        self.datums.home(axis);
     }
 
     /// The offsets of G92 in force.

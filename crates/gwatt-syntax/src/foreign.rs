@@ -108,7 +108,7 @@ pub fn foreign(bytes: &[u8]) -> Option<Foreign> {
             help: "only programs of G-code words are read: have it posted as DIN/ISO",
         });
     }
-    if let Some(settings) = settings(lines.clone()) {
+    if let Some(settings) = settings(&lines) {
         return Some(settings);
     }
     // IGES: the 73rd column of its first line names the section S.
@@ -133,7 +133,7 @@ pub fn foreign(bytes: &[u8]) -> Option<Foreign> {
 }
 
 /// Files that go with a machine and are given in place of its programs.
-fn settings<'a>(lines: impl Iterator<Item = &'a [u8]> + Clone) -> Option<Foreign> {
+fn settings<'a>(lines: &(impl Iterator<Item = &'a [u8]> + Clone)) -> Option<Foreign> {
     let has = |wanted: fn(&[u8]) -> bool| lines.clone().any(wanted);
     if has(|line| line.starts_with(b"schema =")) && has(|line| line.starts_with(b"[converter]")) {
         return Some(Foreign {

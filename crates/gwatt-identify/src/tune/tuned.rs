@@ -31,9 +31,9 @@ impl Tuned {
     ///
     /// Axes that cannot be compared, or a filter that cannot be realised.
     pub fn new(axes: Vec<AxisResponse>, wish: Wish, band_hz: f64) -> Outcome<Self> {
-        if axes.len() < 2 {
+        if axes.is_empty() {
             return Err(IdentifyError::new(
-                "one axis alone has nothing to be like",
+                "there is no axis",
                 "give a recording of each axis that moves along the path",
             ));
         }
