@@ -85,7 +85,7 @@ fn the_robust_bound_covers_both_motors_of_axes_that_are_alike() {
     let masses_kg = [4.0, 4.0];
     let machine = machine(masses_kg);
     for to in [[80.0, 60.0], [100.0, 0.0], [10.0, 99.0], [70.0, -70.0]] {
-        let length = f64::hypot(to[0], to[1]);
+        let length = libm::hypot(to[0], to[1]);
         for feed_mm_min in [3000.0, 12000.0, 24000.0] {
             let speed_m_s = feed_mm_min / 60e3;
             let most = to.map(|part: f64| (part / length).abs() * speed_m_s);
@@ -104,7 +104,7 @@ fn the_robust_bound_covers_both_motors_of_axes_that_are_alike() {
 fn axes_that_differ_are_not_covered() {
     let masses_kg = [12.0, 1.0];
     let (to, feed_mm_min) = ([10.0, 99.0], 12000.0);
-    let length = f64::hypot(to[0], to[1]);
+    let length = libm::hypot(to[0], to[1]);
     let most = to.map(|part: f64| part / length * feed_mm_min / 60e3);
     let bound = bound_w(&machine(masses_kg), to, feed_mm_min);
     assert!(drawn_w(masses_kg, most) > 1.2 * bound);

@@ -114,28 +114,30 @@ fn watts(answers: &mut impl Answers, question: &str, may_lack: bool) -> Result<O
     Ok(number(&answer))
 }
 
+/// What drives an axis: what is asked, its key, and the form of its size.
+const DRIVES: [(&str, &str, &str); 4] = [
+    (
+        "a screw",
+        "screw",
+        "diameter, length and lead in mm, such as 20x800x10",
+    ),
+    (
+        "a pinion on a rack",
+        "pinion",
+        "pitch diameter and width in mm, such as 40x20",
+    ),
+    (
+        "a toothed belt",
+        "belt",
+        "teeth of its pulleys, pitch and width in mm, such as 20x2x9",
+    ),
+    ("a linear motor", "drive", ""),
+];
+
 /// An axis as `--axis` has it.
 fn ask_axis(letter: char, kind: MachineKind, answers: &mut impl Answers) -> Result<String> {
-    let drives = [
-        (
-            "a screw",
-            "screw",
-            "diameter, length and lead in mm, such as 20x800x10",
-        ),
-        (
-            "a pinion on a rack",
-            "pinion",
-            "pitch diameter and width in mm, such as 40x20",
-        ),
-        (
-            "a toothed belt",
-            "belt",
-            "teeth of its pulleys, pitch and width in mm, such as 20x2x9",
-        ),
-        ("a linear motor", "drive", ""),
-    ];
-    let chosen = answers.choice(&format!("{letter}: driven by"), &drives.map(|it| it.0))?;
-    let (_, drive, form) = drives.get(chosen).copied().unwrap_or(drives[0]);
+    let chosen = answers.choice(&format!("{letter}: driven by"), &DRIVES.map(|it| it.0))?;
+    let (_, drive, form) = DRIVES.get(chosen).copied().unwrap_or(DRIVES[0]);
     let needed = ["rapid_mm_min", "accel_mm_s2", "table_kg"];
     // What the parser needs to judge an answer by itself.
     let stand_in = |name: &str| {

@@ -91,13 +91,7 @@ fn axis_table(out: &mut String, axis: &DraftAxis, kind: MachineKind) {
     let accelerated = rounded(moved + balancing.unwrap_or(0.0));
     field("moved_mass_kg", Some(accelerated), &comment);
     let rotor = axis.rotor_kg_m2().unwrap_or(0.0);
-    let comment = match (axis.drive, axis.get("rotor_kg_m2"), &axis.motor) {
-        (Drive::Direct, _, _) => "a linear motor has no rotor",
-        (_, None, Some(_)) => "of the motor; coupling and brake come on top",
-        (_, None, None) => "not given",
-        _ => "",
-    };
-    field("rotor_kg_m2", Some(rotor), comment);
+    field("rotor_kg_m2", Some(rotor), whose_rotor(axis));
     field("gear_ratio", axis.get("gear_ratio"), "");
     let drive = match axis.drive.map_numbers(shown) {
         Shown::Screw([diameter, length, lead]) => format!(
@@ -142,6 +136,16 @@ fn axis_table(out: &mut String, axis: &DraftAxis, kind: MachineKind) {
     }
     field("efficiency", axis.get("efficiency"), "");
     torque(out, axis);
+}
+
+/// What is said of its rotor.
+fn whose_rotor(axis: &DraftAxis) -> &'static str {
+    match (axis.drive, axis.get("rotor_kg_m2"), &axis.motor) {
+        (Drive::Direct, _, _) => "a linear motor has no rotor",
+        (_, None, Some(_)) => "of the motor; coupling and brake come on top",
+        (_, None, None) => "not given",
+        _ => "",
+    }
 }
 
 /// What is known of its motor.

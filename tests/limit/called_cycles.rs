@@ -33,23 +33,85 @@ fn stays(program: &str, options: &str) -> String {
 const HOLES: &str = "G17 G54 G90 G60 F200\nG0 X0 Y0 Z50\nN30 MCALL CYCLE81(50,0,2,-10) ; 6H7\n\
                      N40 X200 Y150\nN50 X0 Y0\nN60 MCALL\nG0 Z100\nM30\n";
 
-/// 800 W are enough for one axis, not for two: the ways between the holes are gone more slowly,
+/// 700 W are enough for one axis, not for two: the ways between the holes are gone more slowly,
 /// and the cycle is called at each place.
 #[test]
 fn the_way_from_hole_to_hole() {
-    assert_snapshot!(limited(800.0, HOLES, ""), @"");
+    assert_snapshot!(limited(700.0, HOLES, ""), @r"
+    G17 G54 G90 G60 F200
+    G0 X0 Y0 Z50
+    N30 ;MCALL CYCLE81(50,0,2,-10) ; 6H7
+    N40 G1 X200 Y150 F32359
+    G0 F200
+    CYCLE81(50,0,2,-10)
+    N50 G1 X0 Y0 F32359
+    G0 F200
+    CYCLE81(50,0,2,-10)
+    N60 MCALL
+    G0 Z100
+    M30
+    ");
 }
 
 /// With `--allow expand` the moves of the cycle stand there, and a comment names it.
 #[test]
 fn cycles_are_written_out() {
-    assert_snapshot!(limited(600.0, HOLES, "--allow expand"), @"");
+    assert_snapshot!(limited(450.0, HOLES, "--allow expand"), @r"
+    G17 G54 G90 G60 F200
+    G0 X0 Y0 Z50
+    N30 ;MCALL CYCLE81(50,0,2,-10) ; 6H7
+    N40 G1 X200 Y150 F18876
+    G0 Z2.
+    G1 Z-10. F200
+    G1 Z50. F23999
+    N50 X0 Y0 F18876
+    G0 Z2.
+    G1 Z-10. F200
+    G1 Z50. F23999
+    N60 MCALL
+    G0 Z100
+    F200
+    M30
+    ");
     // Feeds of its own, a dwell, and a call without MCALL.
     let bore = "G17 G54 G90 G60 F200\nG0 X0 Y0 Z50\nCYCLE85(50,0,2,-10,,0.5,120,300)\nG1 X5\nM30\n";
-    assert_snapshot!(limited(600.0, bore, "--allow expand"), @"");
+    assert_snapshot!(limited(350.0, bore, "--allow expand"), @r"
+    G17 G54 G90 G60 F200
+    G1 X0 Y0 Z50 F17142
+    ;CYCLE85(50,0,2,-10,,0.5,120,300)
+    G1 Z2.
+    G1 Z-10. F120.
+    G4 F0.5
+    G1 Z2. F300.
+    G1 Z50. F17142.
+    F200.
+    G1 X5
+    M30
+    ");
     let deep = "G17 G54 G90 G60 F200\nG0 X0 Y0 Z50\nMCALL CYCLE83(50,0,2,-20,,-8,,2,,,0.5,1)\n\
                 G1 X3\nMCALL\nM30\n";
-    assert_snapshot!(limited(600.0, deep, "--allow expand"), @"");
+    assert_snapshot!(limited(450.0, deep, "--allow expand"), @r"
+    G17 G54 G90 G60 F200
+    G0 X0 Y0 Z50
+    ;MCALL CYCLE83(50,0,2,-20,,-8,,2,,,0.5,1)
+    G1 X3
+    G0 Z2.
+    G1 Z-8. F100.
+    G0 Z2.
+    G0 Z-7.4
+    G1 Z-14. F200.
+    G0 Z2.
+    G0 Z-13.4
+    G1 Z-17.
+    G0 Z2.
+    G0 Z-16.4
+    G1 Z-20.
+    G1 Z50. F24000.
+    G1
+    MCALL
+    F200.
+    M30
+    ");
 }
 
 /// A pattern of holes becomes its holes; under a turned frame too, and in diameters.
@@ -57,7 +119,32 @@ fn cycles_are_written_out() {
 fn patterns_are_written_out() {
     let row = "G17 G54 G90 G60 F200\nG0 X0 Y0 Z50\nTRANS X10 Y20\nAROT Z30\n\
                MCALL CYCLE82(50,0,2,-10,,0.2)\nHOLES1(0,0,0,10,100,3)\nMCALL\nM30\n";
-    assert_snapshot!(limited(600.0, row, "--allow expand"), @"");
+    assert_snapshot!(limited(450.0, row, "--allow expand"), @r"
+    G17 G54 G90 G60 F200
+    G0 X0 Y0 Z50
+    TRANS X10 Y20
+    AROT Z30
+    ;MCALL CYCLE82(50,0,2,-10,,0.2)
+    ;HOLES1(0,0,0,10,100,3)
+    G1 X10. Y0. F18904
+    G0 Z2.
+    G1 Z-10. F200
+    G4 F0.2
+    G1 Z50. F23999
+    G1 X110. F20255
+    G0 Z2.
+    G1 Z-10. F200
+    G4 F0.2
+    G1 Z50. F23999
+    G1 X210. F20255
+    G0 Z2.
+    G1 Z-10. F200
+    G4 F0.2
+    G1 Z50. F23999
+    MCALL
+    G0 F200
+    M30
+    ");
 }
 
 /// What cannot be said in single blocks stays, with its reason.

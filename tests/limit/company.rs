@@ -107,15 +107,15 @@ fn sinumerik() {
                    SUPA G0 X0 Y300 Z300 D0\nG153 X400 Y10\nG0 X10 Y300 M0\nY0 M30\n";
     assert_snapshot!(limited(&shop("siemens", 520.0), program), @r"
     G17 G90 G94 G64
-    T1 D1 G1 X400 Y300 F9113.9
-    M3 S1000 M8 G1 X200 Y10 F12138
-    SUPA G1 X0 Y300 Z300 D0 F3892.9
-    G153 X400 Y10 F11894
+    T1 D1 G1 X400 Y300 F12000
+    M3 S1000 M8 G1 X200 Y10 F11661
+    SUPA G1 X0 Y300 Z300 D0 F2012
+    G153 X400 Y10 F10979
     G0
-    G1 X10 Y300 F12000
+    G1 X10 Y300 F8889.1
     G0
     M0
-    G1 Y0 F19170
+    G1 Y0 F19910
     G0
     M30
     ");
@@ -161,7 +161,7 @@ fn reference_point_of_sinumerik() {
     G17 G90 G94 G54
     G1 X10 F20571
     G1 X20 Y10 F500
-    SUPA G1 X=AC(300.) Y=AC(300.) F28595
+    SUPA G1 X=AC(300.) Y=AC(300.) F20571
     G1
     G74 X1=0 Y1=0
     X310 F500
@@ -181,7 +181,7 @@ fn reference_point_of_sinumerik() {
     );
     limited(&shop, &tool.replace("G74", "D0\nG74"));
     let fixed = program.replace("G74", "G75");
-    refused(&shop, &fixed, "where it leads only the control knows");
+    refused(&shop, &fixed, "give further_reference_mm of the axes");
     let none = program.replace("G0 X10\nG1 X20 Y10 F500\n", "");
     refused(
         &shop,

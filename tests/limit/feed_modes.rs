@@ -29,18 +29,86 @@ fn sinumerik_keeps_the_rule_for_the_spindle() {
         format!("G18 G54 G90 G60\nLIMS=3000\n{mode}\nG0 X400 Z300\nG1 Z250 F0.2\nG0 X0 Z0\nM30\n")
     };
     let shop = shop("siemens", 600.0);
-    assert_snapshot!(limited(&shop, &program("G96 S200 M3")), @"");
-    assert_snapshot!(limited(&shop, &program("G97 S2000 M3")), @"");
-    assert_snapshot!(limited(&shop, &program("S2000 M3 G95")), @"");
+    assert_snapshot!(limited(&shop, &program("G96 S200 M3")), @r"
+    G18 G54 G90 G60
+    LIMS=3000
+    G96 S200 M3
+    G961
+    G1 X400 Z300 F26966
+    G0 G96
+    G1 Z250 F0.2
+    G961
+    G1 X0 Z0 F28390.
+    G0 G96 F0.2
+    M30
+    ");
+    assert_snapshot!(limited(&shop, &program("G97 S2000 M3")), @r"
+    G18 G54 G90 G60
+    LIMS=3000
+    G97 S2000 M3
+    G971
+    G1 X400 Z300 F26966
+    G0 G97
+    G1 Z250 F0.2
+    G971
+    G1 X0 Z0 F28390.
+    G0 G97 F0.2
+    M30
+    ");
+    assert_snapshot!(limited(&shop, &program("S2000 M3 G95")), @r"
+    G18 G54 G90 G60
+    LIMS=3000
+    S2000 M3 G95
+    G94
+    G1 X400 Z300 F26966
+    G0 G95
+    G1 Z250 F0.2
+    G94
+    G1 X0 Z0 F28390.
+    G0 G95 F0.2
+    M30
+    ");
 }
 
 /// Under an inverse time each block has its own F, so that none is put back.
 #[test]
 fn an_inverse_time_has_no_feed_to_put_back() {
     let program = "G21 G90 G54 G93\nG0 X400. Y300.\nG1 X390. F100.\nG0 X0. Y0.\nM30\n";
-    assert_snapshot!(limited(&shop("fanuc", 600.0), program), @"");
-    assert_snapshot!(limited(&shop("linuxcnc", 600.0), program), @"");
-    assert_snapshot!(limited(&shop("grbl", 600.0), program), @"");
+    assert_snapshot!(limited(&shop("fanuc", 600.0), program), @r"
+    G21 G90 G54 G93
+    G94
+    G4 P1
+    G9 G1 X400. Y300. F26966.
+    G0 G93
+    G1 X390. F100.
+    G94
+    G4 P1
+    G9 G1 X0. Y0. F26749.
+    G0 G93
+    M30
+    ");
+    assert_snapshot!(limited(&shop("linuxcnc", 600.0), program), @r"
+    G21 G90 G54 G93
+    G94
+    G4 P0
+    G1 X400. Y300. F37500
+    G4 P0
+    G0 G93
+    G1 X390. F100.
+    G0 X0. Y0.
+    M30
+    ");
+    assert_snapshot!(limited(&shop("grbl", 600.0), program), @r"
+    G21 G90 G54 G93
+    G94
+    G1 X400. Y300. F26966
+    G0 G93
+    G1 X390. F100.
+    G94
+    G1 X0. Y0. F26749.
+    G0 G93
+    M30
+    ");
 }
 
 /// A block that says itself what F means stays as it is.

@@ -47,9 +47,9 @@ fn circle([a, b]: [[f64; 2]; 2]) -> [f64; 2] {
     let distances: Vec<f64> = (0..720)
         .map(|k| {
             let t = TAU * f64::from(k) / 720.0;
-            let x = RADIUS_MM * a[0] * (t + a[1]).cos();
-            let y = RADIUS_MM * b[0] * (t + b[1]).sin();
-            x.hypot(y)
+            let x = RADIUS_MM * a[0] * libm::cos(t + a[1]);
+            let y = RADIUS_MM * b[0] * libm::sin(t + b[1]);
+            libm::hypot(x, y)
         })
         .collect();
     let most = distances.iter().copied().fold(0.0, f64::max);
@@ -66,7 +66,7 @@ fn circles(tuned: &Tuned) -> [String; 2] {
             let plain = tuned.axes[index].follows().at_hz(hz);
             let filter = tuned.correction.at_hz(index, hz);
             let own = if filtered { plain * filter } else { plain };
-            [own.norm(), own.im.atan2(own.re)]
+            [own.norm(), libm::atan2(own.im, own.re)]
         });
         let [round, smaller] = circle(axes);
         let word = if smaller < 0.0 { "larger" } else { "smaller" };

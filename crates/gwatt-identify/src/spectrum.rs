@@ -76,7 +76,7 @@ pub fn measure(
         && let Some(period) = repetition(reference)
         && n / period >= 3
     {
-        return over_periods(input, output, instrument, period, period_s);
+        return Some(over_periods(input, output, instrument, period, period_s));
     }
     let length = stretch.unwrap_or_else(|| (n / 6).next_power_of_two().clamp(64, 1 << 11));
     Some(over_stretches(
@@ -266,7 +266,7 @@ fn over_periods(
     instrument: Option<&[f64]>,
     period: usize,
     period_s: f64,
-) -> Option<FrequencyResponse> {
+) -> FrequencyResponse {
     let n = input.len().min(output.len());
     let count = n / period;
     let first = usize::from(count >= 3);
@@ -331,7 +331,7 @@ fn over_periods(
         out.variance.push(smooth * per_line / u.norm_sqr());
         out.power.push(*total);
     }
-    Some(out)
+    out
 }
 
 /// Means over so many neighbours on either side; at the ends over as many, so that none of few

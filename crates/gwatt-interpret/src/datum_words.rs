@@ -134,6 +134,17 @@ impl Control<'_> {
         apart
     }
 
+    /// Of axes of which it is not known how far they go, those of which it is assumed where
+    /// they start: what their places rest on was taken as 0.
+    pub(super) fn assumed(&self, unknown_start: AxisSet) -> AxisSet {
+        let lost = if self.rules.relative_places {
+            unknown_start
+        } else {
+            self.position.unknown
+        };
+        AxisSet(unknown_start.0 & !lost.0)
+    }
+
     /// Axes whose places do not rest on what coordinates of the program rest on.
     pub(super) fn apart_from_program(&self) -> AxisSet {
         let mut apart = AxisSet::default();

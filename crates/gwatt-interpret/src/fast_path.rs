@@ -43,10 +43,8 @@ impl Control<'_> {
         steps: &mut Vec<Step>,
         facts: &mut Facts,
     ) -> Option<()> {
-        if !self.may_go_direct() || block.tape || block.delete_level > 0 {
-            return None;
-        }
-        if self.may_hide_words(text, block) {
+        let skipped = block.tape || block.delete_level > 0;
+        if !self.may_go_direct() || skipped || self.may_hide_words(text, block) {
             return None;
         }
         let mut straight = Straight {

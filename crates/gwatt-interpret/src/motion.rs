@@ -264,12 +264,7 @@ impl Control<'_> {
                 moving.insert(axis);
             }
         }
-        // What rests on an offset that nobody has given is assumed, not unknown.
-        let assumed_start = if self.rules.relative_places {
-            AxisSet::default()
-        } else {
-            AxisSet(unknown_start.0 & !self.position.unknown.0)
-        };
+        let assumed_start = self.assumed(unknown_start);
         moving.0 &= !unknown_start.0 | assumed_start.0;
         if let Some(arc) = &arc {
             moving.insert(arc.plane[0]);

@@ -14,7 +14,7 @@ use gwatt_syntax::source::Span;
 impl Control<'_> {
     /// G28 and G30: to the intermediate point, then to the reference point.
     pub(super) fn reference(&mut self, number: u16, span: Span, run: &mut Run<'_, '_>) {
-        let Some(point) = self.reference_number(number, span, run) else {
+        let Some(point) = reference_number(number, span, run) else {
             return;
         };
         run.facts.reference = Some(point);
@@ -64,21 +64,6 @@ impl Control<'_> {
         self.knobs.rapid_factor = rapid_factor;
     }
 
-    /// The number of the point that G28 or G30 goes to: P of G30, which is 2 without it.
-    fn reference_number(&self, number: u16, span: Span, run: &mut Run<'_, '_>) -> Option<u16> {
-        if number != 300 {
-            return Some(1);
-        }
-        let point = run.words.take(b'P').unwrap_or(2.0);
-        if (1.0..=4.0).contains(&point) && point.fract() == 0.0 {
-            return Some(point as u16);
-        }
-        run.report
-            .error("reference-axes", "G30 has reference points 2 to 4", span)
-            .help("write P2, P3 or P4, or none for the second");
-        None
-    }
-
     /// The point that G28 or G30 goes to, machine coordinates, and the axes of which it is not
     /// known how far it is: `LinuxCNC` keeps the first two among its parameters; without
     /// those, and for others, they are in the machine file.
@@ -92,16 +77,13 @@ impl Control<'_> {
         let mut place = [0.0; AXES];
         let mut apart = AxisSet::default();
         for axis in named.iter() {
-            let datum = match self.known_reference(point, axis) {
-                Some(place_mm) => {
-                    place[axis] = place_mm;
-                    let stored = self.position.datums.stored(point, axis);
-                    stored.unwrap_or_else(|| self.machine_datum(axis))
-                }
-                None => {
-                    note_machine_zero(span, run);
-                    Datum::Reference(point)
-                }
+            let datum = if let Some(place_mm) = self.known_reference(point, axis) {
+                place[axis] = place_mm;
+                let stored = self.position.datums.stored(point, axis);
+                stored.unwrap_or_else(|| self.machine_datum(axis))
+            } else {
+                note_machine_zero(span, run);
+                Datum::Reference(point)
             };
             if self.position.is_apart(axis, datum) {
                 apart.insert(axis);
@@ -262,4 +244,19 @@ impl Control<'_> {
 fn note_machine_zero(span: Span, run: &mut Run<'_, '_>) {
     let message = "the reference points of G28 and G30 are taken as machine zero";
     run.report.note_once("reference-point", message, span);
+}
+
+/// The number of the point that G28 or G30 goes to: P of G30, which is 2 without it.
+fn reference_number(number: u16, span: Span, run: &mut Run<'_, '_>) -> Option<u16> {
+    if number != 300 {
+        return Some(1);
+    }
+    let point = run.words.take(b'P').unwrap_or(2.0);
+    if (1.0..=4.0).contains(&point) && point.fract() == 0.0 {
+        return Some(point as u16);
+    }
+    run.report
+        .error("reference-axes", "G30 has reference points 2 to 4", span)
+        .help("write P2, P3 or P4, or none for the second");
+    None
 }

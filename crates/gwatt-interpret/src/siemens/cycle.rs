@@ -69,10 +69,9 @@ impl Call {
     fn not_followed(&self, plane: [usize; 3]) -> Option<usize> {
         // The first of the three that say how others are meant.
         let modes = match self.kind {
-            Kind::Drill => 7,
             Kind::Deep => 18,
             Kind::Bore if self.feeds => 9,
-            Kind::Bore => 7,
+            Kind::Drill | Kind::Bore => 7,
             _ => return None,
         };
         let own_plane = match plane {
@@ -82,7 +81,6 @@ impl Call {
         };
         let fine = |place: usize, value: f64| match place.checked_sub(modes) {
             None => self.kind != Kind::Deep || !matches!(place, 13 | 16),
-            Some(0) => false,
             Some(1) => value == own_plane,
             // Depths as they are given; dwells in seconds.
             Some(2) => [2.0, 10.0, 12.0].contains(&value),

@@ -135,6 +135,20 @@ impl Control<'_> {
         state.arrive(target, before, run);
     }
 
+    /// Notes what the place rests on to which an axis goes, and whether it is known how far
+    /// that is.
+    fn put_on(&self, target: &mut Target, axis: usize, machine_coordinates: bool) {
+        let datum = if machine_coordinates {
+            self.machine_datum(axis)
+        } else {
+            self.program_datum(axis)
+        };
+        target.datums[axis] = Some(datum);
+        if self.position.is_apart(axis, datum) {
+            target.unknown.insert(axis);
+        }
+    }
+
     /// Reads the axis words and polar coordinates. `None` when something was
     /// wrong.
     pub(super) fn siemens_target(
@@ -200,15 +214,7 @@ impl Control<'_> {
                 _ => {
                     target.program[axis] = value;
                     target.machine[axis] = value;
-                    let datum = if suppressed {
-                        self.machine_datum(axis)
-                    } else {
-                        self.program_datum(axis)
-                    };
-                    target.datums[axis] = Some(datum);
-                    if self.position.is_apart(axis, datum) {
-                        target.unknown.insert(axis);
-                    }
+                    self.put_on(&mut target, axis, suppressed);
                 }
             }
         }
@@ -268,11 +274,7 @@ impl Control<'_> {
         for &(axis, value) in places {
             target.program[axis] = value;
             target.named.insert(axis);
-            let datum = self.program_datum(axis);
-            target.datums[axis] = Some(datum);
-            if self.position.is_apart(axis, datum) {
-                target.unknown.insert(axis);
-            }
+            self.put_on(&mut target, axis, false);
         }
         let place = state.machine_place(&target.program);
         for (axis, place) in place.into_iter().enumerate() {
