@@ -17,7 +17,7 @@ fn fanuc() {
     let found = imported(&text);
     assert_eq!(found.format, Format::Fanuc);
     assert_snapshot!(render(&found.warnings), @r"
-    settings:12, warning: parameter 1783, steps of speed at corners, is not taken over / the robust bound holds for whatever it makes of speeds below the limits of the axes
+    settings:14, warning: parameter 1783, steps of speed at corners, is not taken over / the robust bound holds for whatever it makes of speeds below the limits of the axes
       | N01783Q1A1P500A2P0A3P0A4P0
       |            ^^^
     ");
@@ -25,30 +25,31 @@ fn fanuc() {
     controller = "fanuc"
     [converter]
     [path]
-    rapid = "linear"             # bit LRP of N01401 L1 P00000010 (line 6)
-    max_feed_mm_min = 12000      # N01422 L1 P12000 (line 8)
+    rapid = "linear"             # bit LRP of N01401 L1 P00000010 (line 8)
+    max_feed_mm_min = 12000      # N01422 L1 P12000 (line 10)
     [language]
-    decimal_point = "least-increment" # bit DPI of N03401 L1 P00000000 (line 13)
+    decimal_point = "least-increment" # bit DPI of N03401 L1 P00000000 (line 15)
     [axes.X]
     kind = "linear"
-    rapid_mm_min = 36000         # N01420 A1 P36000 (line 7)
+    rapid_mm_min = 36000         # N01420 A1 P36000 (line 9)
     reference_mm = -1.5          # N01240 A1 P-1500 (line 5)
-    accel_mm_s2 = 6250           # 12000/min in 32 ms: N01622 A1 P32 (line 11), the highest
+    further_reference_mm = [-2.5, 0] # N01241 A1 P-2500 (line 6) to N01242 A1 P0 (line 7)
+    accel_mm_s2 = 6250           # 12000/min in 32 ms: N01622 A1 P32 (line 13), the highest
     [axes.Y]
     kind = "linear"
-    rapid_mm_min = 36000         # N01420 A2 P36000 (line 7)
+    rapid_mm_min = 36000         # N01420 A2 P36000 (line 9)
     reference_mm = 0             # N01240 A2 P0 (line 5)
-    accel_mm_s2 = 6000           # 36000/min in 100 ms: N01620 A2 P100 (line 10), the highest
+    accel_mm_s2 = 6000           # 36000/min in 100 ms: N01620 A2 P100 (line 12), the highest
     [axes.Z]
     kind = "linear"
-    rapid_mm_min = 30000         # N01420 A3 P30000 (line 7)
+    rapid_mm_min = 30000         # N01420 A3 P30000 (line 9)
     reference_mm = 0             # N01240 A3 P0 (line 5)
-    accel_mm_s2 = 4166.666667    # 30000/min in 120 ms: N01620 A3 P120 (line 10), the highest
+    accel_mm_s2 = 4166.666667    # 30000/min in 120 ms: N01620 A3 P120 (line 12), the highest
     [axes.B]
     kind = "rotary"
-    rapid_deg_min = 12000        # cutting may be faster than rapids: N01422 L1 P12000 (line 8)
+    rapid_deg_min = 12000        # cutting may be faster than rapids: N01422 L1 P12000 (line 10)
     reference_deg = 0            # N01240 A4 P0 (line 5)
-    accel_deg_s2 = 2000          # 12000/min in 100 ms: N01620 A4 P100 (line 10), the highest
+    accel_deg_s2 = 2000          # 12000/min in 100 ms: N01620 A4 P100 (line 12), the highest
     [limits]
     margin = 0.1                 # share of the peak power that is kept free
     "#);
@@ -108,12 +109,13 @@ fn sinumerik() {
     [path]
     rapid = "independent"        # N20730 $MC_G0_LINEAR_MODE=0 (line 6)
     [language]
-    power_on_feed_mm_min = 2000  # N42110 $SC_DEFAULT_FEED=2000 (line 24)
+    power_on_feed_mm_min = 2000  # N42110 $SC_DEFAULT_FEED=2000 (line 25)
     [axes.X]
     kind = "linear"
     rapid_mm_min = 30000         # N32000 $MA_MAX_AX_VELO[AX1]=30000 (line 10)
     reference_mm_min = 10000     # N34070 $MA_REFP_VELO_POS[AX1]=10000 (line 22)
     reference_mm = -3            # N34100 $MA_REFP_SET_POS[0,AX1]=-3 (line 23)
+    further_reference_mm = [-7]  # N30600 $MA_FIX_POINT_POS[0,AX1]=-7 (line 24)
     accel_mm_s2 = 5000           # N32300 $MA_MAX_AX_ACCEL[1,AX1]=5 (line 15), the highest
     [axes.C]
     kind = "rotary"
