@@ -40,11 +40,13 @@ impl Heading {
     }
 
     /// The unit of acceleration by what drives it.
+    #[cfg(feature = "html")]
     pub(super) fn response_unit(&self) -> &'static str {
         if self.rotary { "1/(kg·m²)" } else { "1/kg" }
     }
 
     /// What drives it.
+    #[cfg(feature = "html")]
     pub(super) fn force_name(&self) -> &'static str {
         if self.rotary { "torque" } else { "force" }
     }

@@ -261,7 +261,7 @@ fn a_block_that_works_values_out_is_not_plain() {
         facts.plain
     };
     let lines = [
-        "G1 X1 F60",
+        "G1 X1 Y0.5 F60",
         "X2",
         "X3 #1=5",
         "X#1",
