@@ -78,8 +78,9 @@ fn a_bar_is_shown_and_taken_away() {
         writeln!(program, "G1 X{} F500", number % 7).unwrap();
     }
     shop.put("long.ngc", &program);
+    // How far the work is when it is first looked at depends on the machine.
     for (arguments, shown) in [
-        ("check long.ngc", "long.ngc, pass 1 ["),
+        ("check long.ngc", "long.ngc, pass "),
         ("check long.ngc gentle.ngc", "of 2 programs ["),
         ("limit long.ngc -o out.ngc", "long.ngc, pass "),
         ("report long.ngc -o rows.csv", "long.ngc, pass "),
@@ -87,21 +88,21 @@ fn a_bar_is_shown_and_taken_away() {
         ("size gentle.ngc", "size, pass "),
         (
             "limit long.ngc gentle.ngc --with-subprograms -o set",
-            "2 programs, pass ",
+            "2 programs, ",
         ),
-        (
-            "limit long.ngc --with-subprograms -o one",
-            "long.ngc, pass ",
-        ),
+        ("limit long.ngc --with-subprograms -o one", "long.ngc, "),
     ] {
         let arguments = format!("{arguments} -m three-axis");
-        let bar = format!("{arguments} --progress always");
-        let Some(seen) = on_a_terminal(&shop, &bar) else {
+        let Some(seen) = on_a_terminal(&shop, &format!("{arguments} --progress always")) else {
             return;
         };
         let plain = on_a_terminal(&shop, &format!("{arguments} --progress never")).unwrap();
-        assert!(seen.contains(shown), "{arguments}: {seen:?}");
-        assert!(!plain.contains(shown), "{arguments}: {plain:?}");
+        let bar = |text: &str| {
+            text.split('\r')
+                .any(|line| line.contains(shown) && line.contains(" %  "))
+        };
+        assert!(bar(&seen), "{arguments}: {seen:?}");
+        assert!(!bar(&plain), "{arguments}: {plain:?}");
         assert_eq!(screen(&seen), screen(&plain), "{arguments}: {seen:?}");
     }
 }
