@@ -50,6 +50,13 @@ def machine(profile, peak_w):
     text += f"[converter]\npeak_power_w = {peak_w!r}\n[limits]\nmargin = 0.0\n"
     if profile == "siemens":
         text += "[language]\npower_on_feed_mm_min = 1000\n"
+    if profile in MILLS | LATHES:
+        text += "[language]\n"
+        if profile != "iso":
+            text += 'decimal_point = "calculator"\n'
+        text += 'units = "mm"\n'
+    if profile in LATHES:
+        text += "escape_mm = 1\ngroove_return_mm = 1\n"
     if profile in MILLS | KEPT:
         text += "[offsets]\n" + OFFSETS
     if profile in LATHES:

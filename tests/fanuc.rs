@@ -277,3 +277,76 @@ fn a_second_block_on_a_line() {
         "2 rapid X1.0000\n"
     );
 }
+
+/// Q of milling cycles without a point: as the other lengths where the machine file says what
+/// they mean, else as whole millimetres, unless the hole is not so deep.
+#[test]
+fn pecks_without_a_point() {
+    let pecks = |language: &str, q: &str| {
+        let program = format!("G21 G90 G0 X0 Y0 Z30.\nG99 G83 Z-20. R2. Q{q} F100.\nG80\nM30\n");
+        let machine = machine("fanuc", &format!("[language]\n{language}\n"));
+        moves_on(&machine, &program).matches(" feed ").count()
+    };
+    let fine = "decimal_point = \"least-increment\"";
+    let whole = "decimal_point = \"calculator\"";
+    assert_eq!(pecks(fine, "5500"), 4);
+    assert_eq!(pecks(fine, "5.5"), 4);
+    assert_eq!(pecks(whole, "5500"), 1);
+    assert_eq!(pecks("", "5500"), 4);
+    assert_eq!(pecks("", "11"), 2);
+    // K says how often, whatever numbers mean.
+    let program = "G21 G90 G0 X0 Y0 Z30.\nG99 G81 Z-20. R2. F100.\nG91 X7.5 K3\nG80\nM30\n";
+    let machine = machine("fanuc", &format!("[language]\n{fine}\n"));
+    assert_eq!(moves_on(&machine, program).matches(" feed ").count(), 4);
+    assert!(!notes("fanuc", program).contains(&"no-point"));
+}
+
+/// Units are those of the program before, or a setting, where the program says nothing.
+#[test]
+fn units_that_nobody_gave() {
+    let program = "G0 X10. Y10.\nM30\n";
+    for controller in ["fanuc", "haas", "haas-lathe", "mazak", "okuma", "linuxcnc"] {
+        let program = if controller == "haas-lathe" {
+            "G0 X10. Z10.\nM30\n"
+        } else {
+            program
+        };
+        assert!(
+            notes(controller, program).contains(&"no-units"),
+            "{controller}"
+        );
+        assert!(!notes(controller, &format!("G21 {program}")).contains(&"no-units"));
+    }
+    assert!(!notes("grbl", program).contains(&"no-units"));
+    let said = machine("fanuc", "[language]\nunits = \"mm\"\n");
+    let mut summary = pipeline::analyze(Cursor::new(program), &said, &Options::default(), None);
+    let notes = summary
+        .as_mut()
+        .map(|it| std::mem::take(&mut it.notes))
+        .unwrap();
+    assert!(notes.iter().all(|note| note.rule != "no-units"));
+}
+
+/// With a point places would be others than those of the program.
+#[test]
+fn nothing_is_written_in_another_way_without_points() {
+    let shop = |language: &str| {
+        let rest = format!("[path]\nrapid = \"linear\"\n[language]\n{language}\n");
+        crate::shop::Shop::mill("fanuc", "peak_power_w = 400", &rest, "")
+    };
+    let program = "G21 G90 G0 Z30.\nG99 G81 X200 Y80. Z-20. R2. F100.\nG80\nM30\n";
+    let run = |language: &str| {
+        let shop = shop(language);
+        shop.put("a.nc", program);
+        shop.run("limit a.nc --allow feed,expand")
+    };
+    let (code, _, errors) = run("");
+    assert_eq!(code, 1, "{errors}");
+    assert!(
+        errors.contains("numbers of the program have no decimal point"),
+        "{errors}"
+    );
+    let (code, text, errors) = run("decimal_point = \"calculator\"");
+    assert_eq!(code, 0, "{errors}");
+    assert!(text.contains("X200"), "{text}");
+}

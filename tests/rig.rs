@@ -102,6 +102,7 @@ fn controller() -> Controller {
             rapid_at_power_on: false,
             loose_o_words: false,
             metric: true,
+            units_kept: false,
             absolute: true,
             arc_absolute: false,
             g61: PathMode::ExactStop,

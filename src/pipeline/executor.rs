@@ -266,6 +266,9 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
             let subs = uncalled || flow.is_some_and(Flow::holds_subprograms);
             self.diagnostics.push(nothing_done(subs));
         }
+        if self.executed > 0 && self.diagnostics.errors == 0 && self.interpreter.assumes_unit() {
+            self.diagnostics.push(no_units());
+        }
         if self.interpreter.holds() && self.diagnostics.errors == 0 {
             let (rule, message, help) = if self.interpreter.holds_corner() {
                 let message = "the program ends before the second move of a corner";
@@ -304,6 +307,16 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
             None => failure,
         }
     }
+}
+
+/// Nobody has said what a length is.
+fn no_units() -> Diagnostic {
+    let message = "neither the program (G20, G21) nor the machine file says whether lengths are \
+                   millimetres or inches: taken as millimetres, of which the control may make inches";
+    Diagnostic::note("no-units", message).help(
+        "write G21 or G20 at the beginning, or say units = \"mm\" or \"inch\" under [language] of \
+         the machine file",
+    )
 }
 
 /// The program as bytes; `None` where it is too large to be held.

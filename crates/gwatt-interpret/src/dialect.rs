@@ -13,6 +13,9 @@ use gwatt_machine::units::MM_PER_INCH;
 use gwatt_machine::{Dialect, Lathe};
 use gwatt_motion::FeedMode;
 
+/// The rule of the note on numbers without a point, whose meaning nobody has given.
+pub const NO_POINT: &str = "no-point";
+
 /// One least increment of IS-B, in program units.
 const LEAST_MM: f64 = 1e-3;
 const LEAST_INCH: f64 = 1e-4;

@@ -102,6 +102,13 @@ impl<'m> Interpreter<'m> {
         &self.control.modal
     }
 
+    /// Whether lengths count in a unit that neither the program nor the machine file names,
+    /// where the control may have another one in force.
+    #[must_use]
+    pub fn assumes_unit(&self) -> bool {
+        self.control.machine.controller.language.units_kept && !self.control.modal.unit_is_said
+    }
+
     /// The limits in force after the last block.
     #[must_use]
     pub fn knobs(&self) -> &KnobState {

@@ -92,6 +92,7 @@ mod written_out;
 
 pub use code::Motion;
 pub use control::Effects;
+pub use dialect::NO_POINT;
 pub use execute::Interpreter;
 pub use facts::{CalledCycle, Facts, TOOL_CHANGE_UNKNOWN, ToolWords};
 pub use fast_path_state::FastPathState;

@@ -78,6 +78,8 @@ pub struct Modal {
     pub arc_absolute: bool,
     /// Millimetres in one program unit.
     pub mm_per_unit: f64,
+    /// A word of the program has said so.
+    pub unit_is_said: bool,
     /// G93, G94 or G95.
     pub feed_mode: FeedMode,
     /// The number of the G word that says so, times ten: on lathes also G98 and G99, on
@@ -118,6 +120,7 @@ impl Modal {
             extruder_absolute: language.absolute,
             arc_absolute: language.arc_absolute,
             mm_per_unit: if language.metric { 1.0 } else { MM_PER_INCH },
+            unit_is_said: false,
             feed_mode: if language.dialect.per_revolution {
                 FeedMode::PerRevolution
             } else {

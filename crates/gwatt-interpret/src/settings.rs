@@ -84,7 +84,10 @@ impl Control<'_> {
             let (code, number, span) = run.words.g[index];
             match code {
                 GCode::Plane(plane) => self.choose_plane(plane, span, run),
-                GCode::Units { mm_per_unit } => self.modal.mm_per_unit = mm_per_unit,
+                GCode::Units { mm_per_unit } => {
+                    self.modal.mm_per_unit = mm_per_unit;
+                    self.modal.unit_is_said = true;
+                }
                 GCode::ToolLength(form) => self.tool_length(form, span, run),
                 GCode::Diameter(on) => self.modal.diameter = on,
                 GCode::Polar(on) => self.polar_mode(on, span, run),

@@ -52,6 +52,9 @@ pub struct Language {
     pub loose_o_words: bool,
     /// `true`: metric at power-on.
     pub metric: bool,
+    /// `true`: that is how most machines are set; the units may be those of the program
+    /// before, or a setting that the machine file does not give.
+    pub units_kept: bool,
     /// `true`: absolute positions (G90) at power-on.
     pub absolute: bool,
     /// `true`: arc centres I J K are absolute (G90.1) at power-on.
@@ -127,6 +130,8 @@ pub struct Dialect {
     pub active: bool,
     /// What numbers without a point mean; `None`: what they say.
     pub point: Option<Point>,
+    /// The machine file says so.
+    pub point_is_known: bool,
     /// Words of `G4` whose numbers without a point are in another unit, with
     /// the seconds in one of it.
     pub dwell_whole: Vec<(u8, f64)>,
@@ -354,8 +359,13 @@ impl Controller {
     /// axes.
     #[must_use]
     pub fn stops_by_word(&self) -> bool {
+        self.may_stop_by_word() && !self.planner.dwell_stops
+    }
+
+    /// The same where a dwell would stop them too.
+    #[must_use]
+    pub fn may_stop_by_word(&self) -> bool {
         self.planner.rapid_joint == RapidJoint::Stop
-            && !self.planner.dwell_stops
             && (self.language.exact_stop_word.is_some() || self.language.stops_by_mode())
     }
 

@@ -171,7 +171,8 @@ impl Control<'_> {
             shift_mm: [0.0; 2],
         };
         if matches!(number, 730 | 830) {
-            self.special.held.q = run.words.take(b'Q').or(self.special.held.q);
+            let depth = (r - bottom).abs() / unit;
+            self.special.held.q = self.cycle_q(Some(depth), run).or(self.special.held.q);
             let Some(q) = self.special.held.q.filter(|q| *q != 0.0) else {
                 run.cycle_needs("Q", number);
                 return None;
@@ -192,7 +193,7 @@ impl Control<'_> {
                         run.words.take(letter).or(self.special.held.ijk[slot]);
                 }
             }
-            self.special.held.q = run.words.take(b'Q').or(self.special.held.q);
+            self.special.held.q = self.cycle_q(None, run).or(self.special.held.q);
             hole.shift_mm = self.iso_shift([first, second], number, run)?;
         }
         if !(hole.r_mm.abs() < 1e9 && hole.bottom_mm.abs() < 1e9) {

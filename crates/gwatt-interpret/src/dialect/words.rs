@@ -1,7 +1,7 @@
 //! Words of Fanuc, Haas and their relatives, as blocks have them.
 
-use super::{INCREMENTAL, LEAST_DEG, LEAST_INCH, LEAST_MM, LENGTHS, has_point};
-use crate::code::GCode;
+use super::{INCREMENTAL, LEAST_DEG, LEAST_INCH, LEAST_MM, LENGTHS, NO_POINT, has_point};
+use crate::code::{GCode, Motion};
 use crate::compensation::Insert;
 use crate::control::{Control, Run};
 use crate::letters::{AXIS_LETTERS, bit};
@@ -75,8 +75,17 @@ impl Control<'_> {
             .g
             .iter()
             .any(|(code, ..)| matches!(code, GCode::Turning(_)));
+        // K of a drilling cycle says how often, unless its shift has that direction.
+        let begins = run.words.g.iter().find_map(|(code, ..)| match code {
+            GCode::Motion(Motion::Special(number)) => Some(*number),
+            _ => None,
+        });
+        let number = begins.unwrap_or(self.special.active);
+        let shifts = matches!(number, 760 | 870) && self.modal.plane[2] != 2;
+        let counts = self.dialect().lathe.is_none() && number != 0 && !shifts;
         for word in &run.block.words {
             if !LENGTHS.contains(&word.letter)
+                || word.letter == b'K' && counts
                 // A count, an angle.
                 || cycle && (word.letter == b'A' || word.letter == b'R' && point == Point::Calculator)
                 || word.value == 0.0
@@ -85,12 +94,7 @@ impl Control<'_> {
                 continue;
             }
             if point == Point::Calculator {
-                let message = "numbers without a decimal point are taken as whole millimetres, \
-                               inches or degrees; where the control takes them for least \
-                               increments (Fanuc: parameter 3401 bit DPI = 0), write \
-                               decimal_point = \"least-increment\" under [language] in the \
-                               machine file";
-                run.report.note_once("no-point", message, word.span);
+                self.note_no_point(word.span, run);
                 return;
             }
             let least = match word.letter {
@@ -100,6 +104,41 @@ impl Control<'_> {
             };
             run.words.scale(word.letter, least);
         }
+    }
+
+    /// Says once what numbers without a point are taken for, where the machine file does not.
+    fn note_no_point(&self, span: Span, run: &mut Run<'_, '_>) {
+        if self.dialect().point_is_known {
+            return;
+        }
+        let message = "numbers without a decimal point are taken as whole millimetres, inches or \
+                       degrees; where the control takes them for least increments (Fanuc: \
+                       parameter 3401 bit DPI = 0), write decimal_point = \"least-increment\" under \
+                       [language] in the machine file, else \"calculator\"";
+        run.report.note_once(NO_POINT, message, span);
+    }
+
+    /// Q of a milling cycle, in units of the program. Of a peck, `depth` is that of the hole:
+    /// one that is deeper in whole units counts least increments, which makes more pecks.
+    pub(crate) fn cycle_q(&self, depth: Option<f64>, run: &mut Run<'_, '_>) -> Option<f64> {
+        let word = run.words.word(b'Q', run.block)?;
+        let value = run.words.take(b'Q')?;
+        let point = self.dialect().point;
+        let (Some(point), false) = (point, has_point(word.number.of(run.report.text))) else {
+            return Some(value);
+        };
+        let inch = self.modal.mm_per_unit == MM_PER_INCH;
+        let fine = value * if inch { LEAST_INCH } else { LEAST_MM };
+        if point == Point::LeastIncrement {
+            return Some(fine);
+        }
+        if value == 0.0 {
+            return Some(value);
+        }
+        self.note_no_point(word.span, run);
+        let too_deep = !self.dialect().point_is_known
+            && depth.is_some_and(|depth| value.abs() > depth && fine.abs() < depth);
+        Some(if too_deep { fine } else { value })
     }
 
     /// A depth or a step, mm: without a point its number counts least

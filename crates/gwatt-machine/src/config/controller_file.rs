@@ -98,6 +98,9 @@ pub(crate) struct LanguageTable {
     /// Numbered variables that the control keeps from one program to the next: first
     /// and last of each range; default 500 to 999, with family = "rs274" 31 to 5000.
     pub(crate) kept_variables: Option<Vec<[u32; 2]>>,
+    /// Whether the units that hold at the start are those of the last program, or a setting
+    /// of the control: a program that names none may mean others; default false.
+    pub(crate) units_kept: Option<bool>,
     /// What a number without a decimal point means; default: what it says,
     /// without a note.
     pub(crate) decimal_point: Option<PointName>,

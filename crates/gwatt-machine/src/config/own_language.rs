@@ -18,6 +18,7 @@ pub(crate) fn take(
     let own = &table.value;
     let dialect = &mut language.dialect;
     dialect.point = own.decimal_point.map(profile::point).or(dialect.point);
+    dialect.point_is_known = own.decimal_point.is_some();
     dialect.diameter = own.diameter.unwrap_or(dialect.diameter);
     language.tool_change = own
         .tool_change
@@ -38,6 +39,7 @@ pub(crate) fn take(
     dialect.active = true;
     if let Some(units) = own.units {
         language.metric = units == UnitsName::Mm;
+        language.units_kept = false;
     }
     if let Some(tolerance) = &own.power_on_tolerance_mm {
         language.power_on_tolerance_mm = tolerance.value;

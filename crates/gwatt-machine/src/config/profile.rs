@@ -77,6 +77,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         rapid_at_power_on: table.rapid_at_power_on.unwrap_or(false),
         loose_o_words: table.loose_o_words.unwrap_or(false),
         metric: table.units != Some(UnitsName::Inch),
+        units_kept: table.units_kept.unwrap_or(false),
         absolute: table.distance != Some(DistanceName::Incremental),
         arc_absolute: table.arc_centre == Some(DistanceName::Absolute),
         g61: table.g61.map_or(power_on, path_mode),
@@ -149,6 +150,7 @@ fn dialect(table: &LanguageTable) -> Dialect {
     let mut dialect = Dialect {
         active: false,
         point: table.decimal_point.map(point),
+        point_is_known: false,
         dwell_whole: table.dwell.iter().flatten().filter_map(whole).collect(),
         lathe: table.lathe.map(|lathe| match lathe {
             LatheName::A => Lathe::A,
