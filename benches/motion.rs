@@ -141,6 +141,7 @@ fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
         levels: false,
         rests: false,
         line_before: true,
+        knobs: true,
         apart: false,
         stop_word: false,
         unsplit: None,

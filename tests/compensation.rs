@@ -289,8 +289,9 @@ fn the_ends_of_compensation() {
 5 feed Y5.000000 F600.00
 "#);
     assert_snapshot!(moves("F600\nG41.1 D4\nG1 X10\nX20\n"), @r#"
-0 compensation: the program ends under cutter compensation: where its last move ends is not known | write G40 and a move, or the end of the program: M2 or M30
-"#);
+    0 no-units: neither the program (G20, G21) nor the machine file says whether lengths are millimetres or inches: taken as millimetres, of which the control may make inches | write G21 or G20 at the beginning, or say units = "mm" or "inch" under [language] of the machine file
+    0 compensation: the program ends under cutter compensation: where its last move ends is not known | write G40 and a move, or the end of the program: M2 or M30
+    "#);
 }
 
 /// How far a point lies to the left of a line.
@@ -405,16 +406,21 @@ M2
 fn what_does_not_fit_is_told_with_its_own_line() {
     // Line 4 is known when line 5 is read, and line 5 with the end of line 6.
     let program = "F600\nG41.1 D4\nG1 X10\nX400 F30000\nY20 F600\nG40\nG1 X0\nM2\n";
+    let text = MILL.fits(program);
+    assert_eq!(text, program.replace("F30000", "F24000"));
+    // M0 would have to stand on a line of its own.
+    let program = program.replace("F30000", "F30000 M0");
+    let program = program.as_str();
     let reasons = MILL.reasons(program);
     let first = &reasons[0];
     assert_eq!(
         (reasons.len(), first.line, first.rule),
         (1, 4, "untouchable")
     );
-    assert_eq!(first.text, b"X400 F30000");
+    assert_eq!(first.text, b"X400 F30000 M0");
     assert_eq!(
         first.message,
-        "the block may not be changed: it is under cutter compensation"
+        "the block may not be changed: it is under cutter compensation, where no line may come between"
     );
     let summary = pipeline::analyze(
         std::io::Cursor::new(program),
@@ -426,9 +432,13 @@ fn what_does_not_fit_is_told_with_its_own_line() {
     assert_eq!(summary.unfit.len(), 1);
     assert_eq!(
         (summary.unfit[0].line, summary.unfit[0].text.as_slice()),
-        (4, b"X400 F30000".as_slice())
+        (4, b"X400 F30000 M0".as_slice())
     );
-    assert!(summary.unfit[0].help.contains("by hand"));
+    // By itself: whether the program has a way for it is looked at by `limit`.
+    assert_eq!(
+        summary.unfit[0].help,
+        "fits with F24000 (limit --allow feed)"
+    );
 }
 
 #[test]

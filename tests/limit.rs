@@ -41,6 +41,7 @@ mod turned;
 mod waits;
 mod ways;
 mod whole;
+mod within;
 mod words_by_axis;
 
 use gwatt::diagnostic::Diagnostic;

@@ -74,10 +74,6 @@ impl<'m> Adviser<'m> {
         if assessment.blended && !assessment.ahead {
             return NEIGHBOURS_HELP.to_owned();
         }
-        if at.compensates {
-            return "lower the feed by hand: `limit` changes nothing under cutter compensation"
-                .to_owned();
-        }
         let per_minute = at.feed_mode == FeedMode::PerMinute;
         let permit = Permit {
             edit: true,
@@ -86,9 +82,10 @@ impl<'m> Adviser<'m> {
             exact_stop: false,
             stands: mv.path_mode == crate::machine::PathMode::ExactStop,
             line_before: true,
+            knobs: !at.compensates,
             apart: false,
             stop_word: false,
-            levels: true,
+            levels: !at.compensates,
             rests: mv.path_mode == crate::machine::PathMode::ExactStop
                 || mv.kind == MoveKind::Rapid
                     && self.machine.controller.planner.rapid_joint == RapidJoint::Stop,

@@ -4,7 +4,8 @@ use super::ends::Places;
 use super::executor::Line;
 use super::line_key::LineKey;
 use super::untouched::{
-    MACHINE_COORDINATES, NO_FEED, PER_REVOLUTION, REFERENCE, UNKNOWN_FEED, WITHOUT_STOP, help,
+    COMPENSATED, MACHINE_COORDINATES, NO_FEED, PER_REVOLUTION, REFERENCE, UNKNOWN_FEED,
+    WITHOUT_STOP, help,
 };
 use crate::interpret::{Facts, FastPathState, FeedMode, KnobState, Motion, Move, MoveKind, Step};
 use crate::limit::{Change, Outcome, Permit, Waiting};
@@ -17,11 +18,11 @@ use crate::syntax::Block;
 pub(super) struct Entry {
     pub(super) key: LineKey,
     pub(super) text: Vec<u8>,
-    /// Earlier lines, of which this block gives moves that were held back.
-    earlier: Vec<(LineKey, Vec<u8>)>,
     pub(super) block: Block,
     pub(super) facts: Facts,
     pub(super) steps: Vec<Step>,
+    /// Some of its steps may come with later blocks.
+    pub(super) awaits: bool,
     /// The certificate holds with it and without it, where it may be skipped.
     pub(super) skips: bool,
     /// What is changed in it is put back right after it.
@@ -56,10 +57,10 @@ impl Entry {
         Self {
             key: line.key,
             text: Vec::new(),
-            earlier: Vec::new(),
             block: Block::default(),
             facts: Facts::default(),
             steps: Vec::new(),
+            awaits: false,
             skips: false,
             apart: false,
             one_corner: true,
@@ -92,10 +93,7 @@ impl Entry {
         std::mem::swap(&mut self.block, line.block);
         std::mem::swap(&mut self.facts, line.facts);
         std::mem::swap(&mut self.steps, line.steps);
-        self.earlier.clear();
-        if self.facts.compensated {
-            self.take_earlier(line);
-        }
+        self.awaits = line.interpreter.holds();
         self.moves = self
             .steps
             .iter()
@@ -132,15 +130,11 @@ impl Entry {
         self.facts.homes || positions(machine, self.mark.motion, mv) || self.stands_for_rapid(mv)
     }
 
-    /// Keeps the texts of the earlier lines that its moves belong to.
-    fn take_earlier(&mut self, line: &Line<'_, '_>) {
-        for step in &self.steps {
-            let Step::Move(mv) = step else { continue };
-            let key = (mv.text, mv.line);
-            let known = key == self.key || self.earlier.iter().any(|it| it.0 == key);
-            if !known && let Some(text) = line.interpreter.held_text(mv) {
-                self.earlier.push((key, text.to_vec()));
-            }
+    /// Whether a step is one of its own.
+    pub(super) fn owns(&self, step: &Step) -> bool {
+        match step {
+            Step::Move(mv) => self.key == (mv.text, mv.line),
+            Step::Action(action) => self.key.1 == action.line,
         }
     }
 
@@ -150,13 +144,6 @@ impl Entry {
             Step::Move(mv) => Some(mv),
             Step::Action(_) => None,
         })
-    }
-
-    /// The text of the line that one of its moves belongs to.
-    pub(super) fn text_of(&self, mv: &Move) -> &[u8] {
-        let key = (mv.text, mv.line);
-        let earlier = self.earlier.iter().find(|it| it.0 == key);
-        earlier.map_or(self.text.as_slice(), |(_, text)| text.as_slice())
     }
 
     /// Whether it moves by a kind that is wanted.
@@ -243,6 +230,7 @@ impl Entry {
             levels: !facts.compensated && knows_levels,
             rests: !facts.compensated && (stops || stopping && self.moves == 1),
             line_before: !facts.compensated,
+            knobs: !facts.compensated,
             apart: self.apart,
             stop_word: machine.controller.language.exact_stop_word.is_some()
                 && self.takes_stop_word(machine, skips),
@@ -273,6 +261,10 @@ impl Entry {
                 "it stops, changes the tool or ends the program",
             ),
             (facts.turns_knob, "it sets limits itself"),
+            (
+                facts.compensated && (facts.tool_words.is_some() || facts.stop_word.is_some()),
+                COMPENSATED,
+            ),
         ];
         let mut found = checks.iter().filter(|(applies, _)| *applies);
         found.next().map(|(_, reason)| *reason)
@@ -284,7 +276,8 @@ impl Entry {
         let mut moving = self.its_moves().filter(|mv| mv.kind != MoveKind::Dwell);
         let one_move = moving.next().is_some() && moving.next().is_none();
         let by_words = self.stop_before && self.may_stop_exactly(machine);
-        one_move && (machine.controller.planner.dwell_stops || by_words)
+        let by_dwells = machine.controller.planner.dwell_stops && !self.facts.compensated;
+        one_move && (by_dwells || by_words)
     }
 
     /// Whether the word for an exact stop may be put into its block or before it.
@@ -299,14 +292,14 @@ impl Entry {
     fn may_stop_exactly(&self, machine: &Machine) -> bool {
         let language = &machine.controller.language;
         let mut words = self.block.words.iter();
-        !self.facts.compensated
-            && !words.any(|word| word.letter == b'G' && (61.0..=64.0).contains(&word.value))
-            && (language.exact_stop_word.is_some()
-                || language.stops_by_mode()
-                || language.family.facts().stops_by_exact_path
-                    && language.g61_1 == PathMode::ExactStop
-                    && self.one_corner
-                    && self.mark.blend_words().is_some())
+        // By a word in it, or by lines around it.
+        let by_lines = language.stops_by_mode()
+            || language.family.facts().stops_by_exact_path
+                && language.g61_1 == PathMode::ExactStop
+                && self.one_corner
+                && self.mark.blend_words().is_some();
+        !words.any(|word| word.letter == b'G' && (61.0..=64.0).contains(&word.value))
+            && (language.exact_stop_word.is_some() || by_lines && !self.facts.compensated)
     }
 
     /// Whether it ends at rest as it is, though corners are rounded.

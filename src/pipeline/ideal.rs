@@ -21,6 +21,8 @@ const WORTH: f64 = 0.01;
 const WORTH_S: f64 = 0.1;
 /// Moves that do not fit of which each is looked into: that takes as long as to lower it.
 const UNFIT_MAX: u64 = 2_000;
+/// The same of moves that are tried in pieces, each of which takes a hundred times as long.
+const IN_PIECES_MAX: u64 = 100;
 
 /// What an ideal word for acceleration would bring; `None` where that is not worth a line,
 /// where the program has so many moves that to try would take too long, or where it would
@@ -68,8 +70,7 @@ pub fn ideal<R: Read + Seek>(
         strategy: Strategy::Split,
         ..asked
     };
-    let in_pieces_s = impossible(&target)
-        .is_none()
+    let in_pieces_s = (before.unfit_count <= IN_PIECES_MAX && impossible(&target).is_none())
         .then(|| trial.soonest_s(options, split))
         .flatten();
     let Some(duration_s) = duration_s.or(in_pieces_s) else {

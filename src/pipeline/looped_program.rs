@@ -2,6 +2,7 @@
 //! limited: the program is held whole, each line gets the lowest change of all
 //! its runs, and the certificate compares both programs run by run.
 
+use std::collections::VecDeque;
 use std::io::{Cursor, Read, Seek, Write};
 use std::slice;
 
@@ -13,6 +14,7 @@ use super::certify::{Certified, Reasons, Verdict};
 use super::drive::drive_end;
 use super::entry::Entry;
 use super::executor::{Executor, read_whole, too_large};
+use super::own_steps::hand_back;
 use super::row::Detail;
 use super::stop_before::Stopping;
 use super::table::Table;
@@ -64,8 +66,9 @@ impl LoopedProgram<'_> {
             depths,
             rungs,
         };
-        let (decided, table) =
-            self.decide(slice::from_ref(&source), 0, Detail::of(rows.as_deref()))?;
+        let table = Table::new(turns_switches(paths));
+        let detail = Detail::of(rows.as_deref());
+        let (decided, table) = self.decide(slice::from_ref(&source), table, detail)?;
         let [decided] = <[Decided; 1]>::try_from(decided).map_err(|_| no_way())?;
         let comment = paths.first().and_then(|it| it.comment(self.machine));
         let (text, edited_lines) = write(0, &program, self.machine, &table, comment);
@@ -89,18 +92,18 @@ impl LoopedProgram<'_> {
             depths,
             rungs,
         };
-        let (_, table) = self.decide(slice::from_ref(&source), 0, Detail::NoRows)?;
+        let table = Table::new(turns_switches(paths)).written_in_order();
+        let (_, table) = self.decide(slice::from_ref(&source), table, Detail::NoRows)?;
         input.rewind().map_err(Failure::Input)?;
-        Ok(table.stopping())
+        Ok(table.stopping(self.machine))
     }
 
-    /// Decides about the lines of programs that share files of subprograms: the lowest of
-    /// all their runs counts. `with_files` is how many programs there are where these files
-    /// are written too, 0 where they are not.
+    /// Decides about the lines of programs that share files of subprograms, in an empty
+    /// table: the lowest of all their runs counts.
     pub(super) fn decide(
         &self,
         sources: &[Source<'_>],
-        with_files: u16,
+        mut table: Table,
         detail: Detail,
     ) -> Result<(Vec<Decided>, Table), Failure> {
         let Self {
@@ -108,11 +111,6 @@ impl LoopedProgram<'_> {
             target,
             how,
         } = *self;
-        let skips = sources.iter().any(|source| turns_switches(source.paths));
-        let mut table = Table::new(skips);
-        if with_files > 0 {
-            table = table.with_files(with_files);
-        }
         for source in sources {
             for options in source.paths {
                 survey(source.program, machine, options, &mut table)?;
@@ -143,8 +141,9 @@ impl LoopedProgram<'_> {
         }
         table.spread_word(machine);
         table.spread_feed();
-        table.spread_stops();
+        table.spread_stops(machine);
         table.spread_left_feeds();
+        table.spread_within();
         Ok((all, table))
     }
 
@@ -220,17 +219,22 @@ fn survey(
     // The axes stand before the first move.
     let mut mode = PathMode::ExactStop;
     let mut before = Mark::of(front.interpreter().modal());
-    let mut entry: Option<Entry> = None;
+    let mut mm_per_unit = before.mm_per_unit;
+    let mut entries = VecDeque::new();
+    let mut spare: Option<Box<Entry>> = None;
+    let mut placed = Vec::new();
     while let Some(mut line) = front.next_line()? {
-        let entry = entry.get_or_insert_with(|| Entry::new(&line));
-        entry.fill(&mut line, machine, mode, before.mm_per_unit);
-        for step in &entry.steps {
-            if let Step::Move(mv) = step {
-                mode = mv.path_mode;
-            }
+        let known = spare.take();
+        let mut entry = known.unwrap_or_else(|| Box::new(Entry::new(&line)));
+        entry.fill(&mut line, machine, mode, mm_per_unit);
+        mm_per_unit = entry.mark.mm_per_unit;
+        entries.push_back(entry);
+        hand_back(&mut entries, &mut mode, &mut placed);
+        while let Some(entry) = entries.pop_front_if(|entry| !entry.awaits) {
+            table.see(machine, entry.key, &entry, &before);
+            before = entry.mark;
+            spare = Some(entry);
         }
-        table.see(machine, entry.key, entry, &before);
-        before = entry.mark;
     }
     table.end();
     front.finish()?;

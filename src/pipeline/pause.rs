@@ -10,7 +10,7 @@ use std::iter::once;
 use super::derate::lower_further;
 use super::over_time::OverTime;
 use super::ways::has_ways;
-use super::writer::{Plan, Writer};
+use super::writer::{Plan, Streamed, Writer};
 use super::{Failure, LimitOptions, LimitSummary, Options};
 use crate::diagnostic::Diagnostic;
 use crate::limit::{Depths, Limiter};
@@ -50,7 +50,7 @@ pub(super) fn has_place<R: Read + Seek>(
         Ok(())
     })?;
     // What may be skipped is limited for all its ways at once, without dwells.
-    Ok(written.is_some_and(|it| !it.may_skip && !it.places.is_empty()))
+    Ok(matches!(written, Streamed::Written(it) if !it.may_skip && !it.places.is_empty()))
 }
 
 /// Says of the limits over time that are missed that the program could wait, where it could.

@@ -12,7 +12,7 @@ use super::derate::LAST_ROUND;
 use super::looped_program::LoopedProgram;
 use super::row::Detail;
 use super::worker::no_thread;
-use super::writer::{Plan, Writer, Written};
+use super::writer::{Plan, Streamed, Writer, Written};
 use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, RowSink};
 use crate::diagnostic::Diagnostic;
 use crate::limit::{Allowed, Depths, Limiter, Paces};
@@ -165,37 +165,36 @@ impl Job<'_> {
         // Where blocks stop unless the program says otherwise, few programs need it: they are
         // read again once it shows.
         let blends = machine.controller.language.power_on_mode == PathMode::LookAhead;
-        let stopping = if blends && machine.controller.stops_by_word() {
-            Some(whole.stopping(&mut input, source)?)
-        } else {
-            None
-        };
-        let detail = Detail::of(rows.as_deref());
-        let sink = rows.as_mut().map(|rows| as_sink(&mut **rows));
-        let mut certifier = Certifier::new(machine, rungs, options, sink);
-        let limiter = Limiter::new(target, how, depths.clone());
-        let writer = Writer::new(
-            &mut input,
-            &mut output,
-            target,
-            options,
-            limiter,
-            PowerModel::new(machine),
-        )
-        .detailed(detail)
-        .pausing(plan)
-        .stopping(stopping);
-        let streamed = if options.threads > 1 {
-            side_by_side(writer, certifier)?
-        } else {
-            let written = writer.run(&mut |batch| certifier.take(batch))?;
-            match written {
-                Some(written) => Some((written, certifier.finish()?)),
-                None => None,
+        let mut first_look = blends && machine.controller.stops_by_word();
+        loop {
+            let stopping = if first_look {
+                Some(whole.stopping(&mut input, source)?)
+            } else {
+                None
+            };
+            let detail = Detail::of(rows.as_deref());
+            let sink = rows.as_mut().map(|rows| as_sink(&mut **rows));
+            let certifier = Certifier::new(machine, rungs, options, sink);
+            let limiter = Limiter::new(target, how, depths.clone());
+            let model = PowerModel::new(machine);
+            let writer = Writer::new(&mut input, &mut output, target, options, limiter, model)
+                .detailed(detail)
+                .pausing(plan)
+                .stopping(stopping);
+            let streamed = if options.threads > 1 {
+                side_by_side(writer, certifier)?
+            } else {
+                one_after_the_other(writer, certifier)?
+            };
+            match streamed {
+                Streamed::Written(done) => return Ok(done),
+                Streamed::WantsStops if !first_look => {
+                    first_look = true;
+                    input.rewind().map_err(Failure::Input)?;
+                    restart(&mut output, rows)?;
+                }
+                Streamed::WantsStops | Streamed::Flows => break,
             }
-        };
-        if let Some(done) = streamed {
-            return Ok(done);
         }
         restart(&mut output, rows)?;
         whole.limit(
@@ -223,11 +222,20 @@ pub(super) fn as_sink<'r>(rows: &'r mut (dyn RestartRows + '_)) -> &'r mut (dyn 
     rows
 }
 
+/// Writes and certifies piece by piece.
+fn one_after_the_other<R: Read + Seek, W: Write>(
+    writer: Writer<'_, R, W>,
+    mut certifier: Certifier<'_, '_>,
+) -> Result<Streamed<(Written, Certified)>, Failure> {
+    let streamed = writer.run(&mut |batch| certifier.take(batch))?;
+    streamed.with(|| certifier.finish())
+}
+
 /// Writes in this thread and certifies in another.
 fn side_by_side<R: Read + Seek + Send, W: Write + Send>(
     writer: Writer<'_, R, W>,
     certifier: Certifier<'_, '_>,
-) -> Result<Option<(Written, Certified)>, Failure> {
+) -> Result<Streamed<(Written, Certified)>, Failure> {
     thread::scope(|scope| {
         let (sender, receiver) = sync_channel(BATCHES);
         let (back, empty) = sync_channel(BATCHES + 2);
@@ -246,7 +254,7 @@ fn side_by_side<R: Read + Seek + Send, W: Write + Send>(
             (Err(refused @ Failure::Refused { .. }), _) => Err(refused),
             (written, certified) => {
                 let certified = certified?;
-                Ok(written?.map(|written| (written, certified)))
+                written?.with(|| Ok(certified))
             }
         }
     })

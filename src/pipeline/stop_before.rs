@@ -7,7 +7,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use super::decision::Decision;
 use super::entry::{Entry, rests};
 use super::line_key::LineKey;
-use crate::interpret::MoveKind;
+use crate::interpret::{Facts, MoveKind};
 use crate::limit::Change;
 use crate::machine::{Machine, PathMode};
 
@@ -60,6 +60,13 @@ impl Stopping {
     pub(super) fn stands_before(&self, line: LineKey) -> bool {
         !self.moving_before.contains(&line)
     }
+}
+
+/// Whether a rapid that becomes a feed begins at rest by a word in the block before it: where
+/// no dwell stops the axes, or none may stand between the blocks.
+pub(super) fn stops_by_word(machine: &Machine, facts: &Facts) -> bool {
+    let controller = &machine.controller;
+    controller.stops_by_word() || facts.compensated && controller.may_stop_by_word()
 }
 
 /// What runs have shown about the blocks before rapids.

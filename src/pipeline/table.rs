@@ -7,7 +7,9 @@ use super::decision::Decision;
 use super::entry::Entry;
 use super::left_feed::LeftFeeds;
 use super::line_key::{IN_A_FILE, LineKey};
-use super::stop_before::{Stopping, StopsBefore};
+use super::stop_before::{Stopping, StopsBefore, stops_by_word};
+use super::untouched::UNDER_COMPENSATION;
+use super::within::Within;
 use crate::interpret::{Corner, FeedMode, KnobState, MoveKind};
 use crate::limit::{Change, FirstFeed};
 use crate::machine::Machine;
@@ -21,6 +23,8 @@ pub(super) struct Table {
     pub(super) skips: bool,
     /// Files of subprograms are written too: their lines may change.
     with_files: bool,
+    /// The lines are written in the order in which they run.
+    in_order: bool,
     /// How many of the texts are programs themselves; those are the first.
     programs: u16,
     /// A block before any motion word cannot have one: then none gets one.
@@ -31,6 +35,7 @@ pub(super) struct Table {
     first_feed: Option<FirstFeed>,
     left_feeds: LeftFeeds,
     stops_before: StopsBefore,
+    within: Within,
     /// Lines that nothing is decided about but the F that they count on.
     restored: HashMap<LineKey, Decision>,
 }
@@ -79,12 +84,14 @@ impl Table {
             lines: HashMap::new(),
             skips,
             with_files: false,
+            in_order: false,
             programs: 1,
             without_word: false,
             without_feed: false,
             first_feed: None,
             left_feeds: LeftFeeds::default(),
             stops_before: StopsBefore::default(),
+            within: Within::default(),
             restored: HashMap::new(),
         }
     }
@@ -99,11 +106,21 @@ impl Table {
         }
     }
 
+    /// The same where what is decided is written while the program is read, from top to
+    /// bottom.
+    pub(super) fn written_in_order(self) -> Self {
+        Self {
+            in_order: true,
+            ..self
+        }
+    }
+
     /// Takes note of a run of a line; `before` is the state before it.
     pub(super) fn see(&mut self, machine: &Machine, line: LineKey, entry: &Entry, before: &Mark) {
-        if machine.controller.stops_by_word() {
+        if machine.controller.may_stop_by_word() {
             self.stops_before.run(machine, line, entry, self.skips);
         }
+        self.within.run(line, entry, before);
         // A line whose moves are held back counts too: they obey its words; and so does one
         // that stands where it would move to.
         let facts = &entry.facts;
@@ -162,6 +179,7 @@ impl Table {
     pub(super) fn end(&mut self) {
         self.left_feeds.end();
         self.stops_before.end();
+        self.within.end();
     }
 
     /// All runs are seen.
@@ -207,6 +225,58 @@ impl Table {
         } else {
             "it runs several times, under feeds or modes that differ"
         })
+    }
+
+    /// Why the words of a block under compensation stay, if they do: what they leave in force
+    /// cannot be put right in the next block.
+    pub(super) fn fixed_under_compensation(&self, entry: &Entry) -> Option<&'static str> {
+        let free = !entry.facts.compensated || self.in_order;
+        let fixed = !free && self.around_within(entry.key).is_none();
+        fixed.then_some(UNDER_COMPENSATION)
+    }
+
+    fn around_within(&self, line: LineKey) -> Option<FeedAround> {
+        self.within
+            .around(line, |line| line.0 == 0 || self.with_files)
+    }
+
+    /// Where a line under compensation is changed, those that come next get what is in force
+    /// before them as words of their own.
+    pub(super) fn spread_within(&mut self) {
+        let changed = |(line, entered): (&LineKey, &Entered)| {
+            let decision = entered.decision.as_deref()?;
+            decision.facts.compensated.then_some(*line)
+        };
+        let lines: Vec<_> = self.lines.iter().filter_map(changed).collect();
+        let mut open = Vec::new();
+        for line in lines {
+            let around = self.around_within(line);
+            let entered = self.lines.get_mut(&line);
+            let decision = entered.and_then(|entered| entered.decision.as_deref_mut());
+            if let (Some(around), Some(decision)) = (around, decision) {
+                decision.around = around;
+                let leaves = decision.change.as_feed || decision.change.feed.is_some();
+                if leaves && !around.is_put_back() {
+                    open.push(line);
+                }
+            }
+        }
+        for line in open {
+            for (next, stated) in self.within.next(line) {
+                let entered = self.lines.get_mut(&next);
+                let decision = match entered.and_then(|entered| entered.decision.as_deref_mut()) {
+                    Some(decision) => {
+                        decision.before = stated.before;
+                        decision
+                    }
+                    None => self.restored.entry(next).or_insert_with(|| stated.clone()),
+                };
+                decision.around = FeedAround::Within {
+                    known_before: false,
+                    put_back: !decision.change.is_none() && decision.around.is_put_back(),
+                };
+            }
+        }
     }
 
     /// Whether corners are taken in one way each time that a line runs.
@@ -314,22 +384,25 @@ impl Table {
         }
     }
 
-    /// Lines before which the axes have to stand.
-    fn stopping_lines(&self) -> impl Iterator<Item = LineKey> {
-        let stopping = |entered: &Entered| entered.decision.as_ref().is_some_and(|it| it.stops);
+    /// Lines before which a word has to let the axes stand.
+    fn stopping_lines(&self, machine: &Machine) -> impl Iterator<Item = LineKey> {
+        let stopping = |entered: &Entered| {
+            let decision = entered.decision.as_deref().filter(|it| it.stops);
+            decision.is_some_and(|it| stops_by_word(machine, &it.facts))
+        };
         let lines = self.lines.iter();
         lines.filter_map(move |(line, entered)| stopping(entered).then_some(*line))
     }
 
     /// Where the program is stopped by words, if it runs from top to bottom.
-    pub(super) fn stopping(&self) -> Stopping {
-        Stopping::of(&self.stops_before, self.stopping_lines())
+    pub(super) fn stopping(&self, machine: &Machine) -> Stopping {
+        Stopping::of(&self.stops_before, self.stopping_lines(machine))
     }
 
     /// Where a rapid is written as a feed, the lines that move before it get their word.
-    pub(super) fn spread_stops(&mut self) {
+    pub(super) fn spread_stops(&mut self, machine: &Machine) {
         let found: Vec<_> = self
-            .stopping_lines()
+            .stopping_lines(machine)
             .flat_map(|line| self.stops_before.stopped(line))
             .map(|(line, decision)| (line, decision.clone()))
             .collect();

@@ -14,6 +14,12 @@ pub(super) const NO_FEED: &str = "no F is in force, and one of the blocks that c
 pub(super) const REFERENCE: &str = "it moves to a reference point";
 pub(super) const MACHINE_COORDINATES: &str = "G53 is for rapids";
 pub(super) const WITHOUT_STOP: &str = "without its stop the corner would be rounded";
+/// Of a block under compensation where it has words that would have to stand by themselves.
+pub(super) const COMPENSATED: &str =
+    "it is under cutter compensation, where no line may come between";
+/// The same where blocks are written one by one.
+pub(super) const UNDER_COMPENSATION: &str =
+    "it is under cutter compensation in a program with calls, loops or blocks that may be skipped";
 
 /// What helps where something may not be changed for this reason.
 pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static str {
@@ -66,6 +72,7 @@ pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static s
             "the machine's builder decides which: tool_change = \"before-motion\" or \
              \"after-motion\" under [language] of the machine file"
         }
+        COMPENSATED | UNDER_COMPENSATION => "lower the feed by hand",
         WITHOUT_STOP if language.g61 == PathMode::ExactStop => {
             "program an exact stop (G61) before the block in front of it, or write the \
              move as a feed by hand"

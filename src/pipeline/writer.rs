@@ -19,6 +19,7 @@ use super::entry::{Entry, knobs, rests};
 use super::executor::Executor;
 use super::judge::Flight;
 use super::outcome::Pause;
+use super::own_steps::Placed;
 use super::preset_notes::PresetNotes;
 use super::row::Detail;
 use super::spindle_rows::SpindleRows;
@@ -53,6 +54,30 @@ pub(super) struct Written {
     pub(super) pauses: Vec<Pause>,
 }
 
+/// How far a program was written as it was read.
+pub(super) enum Streamed<T> {
+    /// To its end.
+    Written(T),
+    /// Its lines are executed in another order than they stand in.
+    Flows,
+    /// Blocks before rapids that become feeds have to stop, which a first look shows.
+    WantsStops,
+}
+
+impl<T> Streamed<T> {
+    /// With what a program that was written to its end has besides.
+    pub(super) fn with<U>(
+        self,
+        more: impl FnOnce() -> Result<U, Failure>,
+    ) -> Result<Streamed<(T, U)>, Failure> {
+        Ok(match self {
+            Self::Written(written) => Streamed::Written((written, more()?)),
+            Self::Flows => Streamed::Flows,
+            Self::WantsStops => Streamed::WantsStops,
+        })
+    }
+}
+
 /// Analyses, changes and writes.
 pub(super) struct Writer<'m, R, W> {
     machine: &'m Machine,
@@ -73,6 +98,8 @@ pub(super) struct Writer<'m, R, W> {
     /// How many of them are judged.
     judged: usize,
     outcomes: Vec<Outcome>,
+    /// Where the steps of a block went; a buffer.
+    placed: Vec<Placed>,
     /// Those of a block that does not wait; empty in between.
     decided: Vec<(Assessment, Outcome)>,
     /// Path mode of the last move that was read.
@@ -138,6 +165,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             flights: VecDeque::new(),
             judged: 0,
             outcomes: Vec::new(),
+            placed: Vec::new(),
             decided: Vec::new(),
             batch: Batch::default(),
             reasons: Reasons::default(),
@@ -169,16 +197,17 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         self
     }
 
-    /// Reads and writes the whole program; `deliver` takes the pieces. `None` where it is to
-    /// be limited whole: lines are executed in another order than they stand in, or a block
-    /// that is written would have to stop.
+    /// Reads and writes the whole program; `deliver` takes the pieces.
     pub(super) fn run(
         mut self,
         deliver: &mut impl FnMut(&mut Batch) -> Result<(), Failure>,
-    ) -> Result<Option<Written>, Failure> {
+    ) -> Result<Streamed<Written>, Failure> {
         while self.read_block()? {
-            if self.front.flows() || self.stop_is_wanted {
-                return Ok(None);
+            if self.front.flows() {
+                return Ok(Streamed::Flows);
+            }
+            if self.stop_is_wanted {
+                return Ok(Streamed::WantsStops);
             }
             // Not before there is another block: what is added at the end of a
             // program depends on its last one.
@@ -190,7 +219,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         self.finish_moves();
         self.write_decided();
         if self.stop_is_wanted {
-            return Ok(None);
+            return Ok(Streamed::WantsStops);
         }
         self.expect_spindle();
         if !self.front.interpreter().ended() {
@@ -205,7 +234,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         }
         self.deliver(deliver)?;
         self.output.flush().map_err(Failure::Output)?;
-        self.conclude().map(|(written, _)| Some(written))
+        self.conclude()
+            .map(|(written, _)| Streamed::Written(written))
     }
 
     /// The figures of the original, and what was decided.
@@ -305,7 +335,8 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
         self.inform_of_stop(&mut entry);
         let assessor = &self.assessor;
         let waits = |step: &Step| matches!(step, Step::Move(mv) if assessor.waits(mv));
-        if self.entries.is_empty() && !entry.steps.iter().any(waits) {
+        let alone = self.entries.is_empty() && !entry.facts.compensated;
+        if alone && !entry.steps.iter().any(waits) {
             self.decide_at_once(&mut entry, judged);
             let moved = entry.moves_on();
             self.assessor.end_line(moved, &mut |_, _, _| {});
@@ -350,6 +381,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
             change: change.as_ref().unwrap_or(&Change::NONE),
             pieces: &pieces,
             stops: self.machine.controller.planner.dwell_stops
+                && !entry.facts.compensated
                 && entry.needs_stops(self.machine, change.as_ref()),
             rests: entry.rests(self.machine, change.as_ref()),
         };

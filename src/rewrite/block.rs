@@ -3,11 +3,14 @@
 mod label;
 mod pieces;
 mod tool_words;
+mod view;
+mod within;
 mod words;
 
 use std::fmt::Write as _;
 
 pub use pieces::PieceWords;
+pub use view::{BlockView, FeedAround};
 
 use label::Label;
 use tool_words::{tool_line, without, without_tool};
@@ -17,57 +20,13 @@ use super::rapid_mark::Comment;
 use super::state::{Mark, Written, motion_word};
 use super::turned::{InForce, Turned};
 use crate::edit::{Edit, apply};
-use crate::interpret::{Facts, FeedMode, KnobState, Motion, ToolWords};
-use crate::limit::Change;
+use crate::interpret::{FeedMode, KnobState, Motion, ToolWords};
 use crate::machine::{Machine, ToolChange};
 use crate::source::split_line_end;
-use crate::syntax::{Block, Word};
+use crate::syntax::Word;
 
 /// Exact stop at the end of each move, on controls without a word for one block.
 const EXACT_STOP: &str = "G61.1";
-
-/// A block with what the rewriter must know of it.
-#[derive(Debug, Clone, Copy)]
-pub struct BlockView<'a> {
-    /// The line, line end included.
-    pub text: &'a [u8],
-    /// Its words.
-    pub block: &'a Block,
-    /// What it does.
-    pub facts: &'a Facts,
-    /// The original's modal state before it.
-    pub before: &'a Mark,
-    /// The original's modal state after it.
-    pub after: &'a Mark,
-    /// The original's limits in force for it; needed where the controller has
-    /// knobs.
-    pub knobs: Option<&'a KnobState>,
-    /// Whether it moves by a rapid, and by a feed.
-    pub rapids: bool,
-    /// See `rapids`.
-    pub feeds: bool,
-    /// What its moves get.
-    pub change: &'a Change,
-    /// Pieces of its line that come before it.
-    pub pieces: &'a [PieceWords],
-    /// It starts and ends at rest: where the axes do not stand anyway, the shortest dwell
-    /// stands before it, and after it unless it runs in exact stop.
-    pub stops: bool,
-    /// It ends at rest as it is.
-    pub rests: bool,
-}
-
-/// The F around a block that is written by itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FeedAround {
-    /// Before it the original's is in force, and after it again.
-    #[default]
-    PutBack,
-    /// What it leaves in force is put right where a later block counts on an F.
-    LeftAfter,
-    /// What is in force before it may be another block's: the original's is written.
-    NotKnownBefore,
-}
 
 /// Writes the blocks of one program.
 #[derive(Debug)]
@@ -96,6 +55,11 @@ pub struct Rewriter<'m> {
     feeds_from_here: bool,
     /// Marks feeds that stand for rapids.
     comment: Option<Comment>,
+    /// The last block was under compensation: nothing may come between it and another such.
+    compensated: bool,
+    /// The word that lets F mean again what it means in the original, times ten, where a block
+    /// under compensation has left another meaning in force.
+    feed_mode_back: Option<u16>,
     /// Lines changed or inserted so far.
     pub edited_lines: u64,
 }
@@ -123,6 +87,8 @@ impl<'m> Rewriter<'m> {
             blend_words: None,
             feeds_from_here: false,
             comment: None,
+            compensated: false,
+            feed_mode_back: None,
             edited_lines: 0,
         }
     }
@@ -149,6 +115,16 @@ impl<'m> Rewriter<'m> {
         }
         self.note_end(view.text);
         let facts = view.facts;
+        self.edits.clear();
+        if self.compensated && !facts.executed {
+            return self.apply_edits(view.text, out);
+        }
+        if std::mem::replace(&mut self.compensated, facts.compensated) && facts.compensated {
+            return self.write_within(view, out);
+        }
+        if self.feed_mode_back.take().is_some() {
+            self.back_to_feed_mode(view.before, out);
+        }
         if !(view.change.exact_stop || view.change.stop) {
             self.blend_again(out);
         }
@@ -157,7 +133,7 @@ impl<'m> Rewriter<'m> {
         let looked_at = facts.boundary
             || facts.selects_tool
             || facts.stop_word.is_some()
-            // Nothing may come between blocks under compensation.
+            // Between blocks under compensation nothing can be put right.
             || facts.compensated
             || facts.turns_knob
             || facts.reads_state
@@ -167,7 +143,6 @@ impl<'m> Rewriter<'m> {
         if looked_at {
             self.restore(view.before, view.knobs, out);
         }
-        self.edits.clear();
         if !facts.executed {
             self.take_label_out();
             return self.apply_edits(view.text, out);
@@ -177,8 +152,7 @@ impl<'m> Rewriter<'m> {
             self.write_pieces(view, out);
             self.turn_knobs(view.change, view, out);
         }
-        // Its F is by the minute where the others are by the revolution or an inverse time.
-        let apart = view.change.as_feed && !view.after.per_minute();
+        let apart = apart(view) && !facts.compensated;
         if apart {
             self.restore(view.before, view.knobs, out);
             let [per_minute, _] = view.after.per_minute_and_back();
@@ -196,6 +170,9 @@ impl<'m> Rewriter<'m> {
         if view.change.exact_stop || view.change.stop {
             self.exact_stop(view, out);
         }
+        if facts.compensated {
+            self.per_minute_within(view);
+        }
         self.motion_word(view);
         self.feed_word(view);
         self.mark_rapid(view);
@@ -207,7 +184,7 @@ impl<'m> Rewriter<'m> {
             self.insert_stop(out);
         }
         if apart {
-            self.back_to_feed_mode(view, out);
+            self.back_to_feed_mode(view.after, out);
         }
         if let Some(words) = tool_after {
             self.line_after(tool_line(&words, view.text).as_bytes(), view, out);
@@ -274,24 +251,24 @@ impl<'m> Rewriter<'m> {
     }
 
     /// A line that puts back what was in force, after a feed per minute among others.
-    fn back_to_feed_mode(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) {
+    fn back_to_feed_mode(&mut self, original: &Mark, out: &mut Vec<u8>) {
         self.complete_line(out);
         let mut words = String::new();
-        if let Some(digit) = view.after.motion.digit() {
+        if let Some(digit) = original.motion.digit() {
             let _ = write!(words, "G{} ", char::from(digit));
         }
-        let [_, back] = view.after.per_minute_and_back();
+        let [_, back] = original.per_minute_and_back();
         words.push_str(&g_word(back));
         // Under an inverse time each block has its own F.
-        let feed = view.after.feed.as_ref();
-        let feed = feed.filter(|_| view.after.feed_mode == FeedMode::PerRevolution);
+        let feed = original.feed.as_ref();
+        let feed = feed.filter(|_| original.feed_mode == FeedMode::PerRevolution);
         if let Some(feed) = feed {
-            let _ = write!(words, " F{}", feed_again(feed, view.facts.feed_mm_per_unit));
+            let _ = write!(words, " F{}", feed_again(feed, original.mm_per_unit));
         }
         self.insert_line(&words, out);
         self.written = Written {
-            motion: view.after.motion,
-            feed: view.after.feed_value(),
+            motion: original.motion,
+            feed: original.feed_value(),
         };
         self.stopped = false;
     }
@@ -302,9 +279,11 @@ impl<'m> Rewriter<'m> {
     #[must_use]
     pub fn pass(&mut self, text: &[u8], mark: &Mark, rests: bool, out: &mut Vec<u8>) -> bool {
         let same = self.written.motion == mark.motion && self.written.feed == mark.feed_value();
-        if !same || !self.turned.is_empty() || self.blend_words.is_some() {
+        let as_it_was = same && self.turned.is_empty() && self.blend_words.is_none();
+        if !as_it_was || self.feed_mode_back.is_some() {
             return false;
         }
+        self.compensated = false;
         self.stopped = rests;
         self.note_end(text);
         out.extend_from_slice(text);
@@ -331,20 +310,30 @@ impl<'m> Rewriter<'m> {
         around: FeedAround,
         out: &mut Vec<u8>,
     ) -> bool {
-        let known = around != FeedAround::NotKnownBefore;
+        let known = match around {
+            FeedAround::PutBack | FeedAround::LeftAfter => true,
+            FeedAround::NotKnownBefore => false,
+            FeedAround::Within { known_before, .. } => known_before,
+        };
         self.written = Written {
             motion: view.before.motion,
             feed: view.before.feed_value().filter(|_| known),
         };
         // Whatever the line above ends with, another may come before this one.
         self.stopped = false;
+        let within = matches!(around, FeedAround::Within { .. });
+        self.compensated = within;
+        if within && !known {
+            self.state_within(view.before);
+        }
         if view.block.delete_level > 0 {
             label::delete_mark(view.text).clone_into(&mut self.skip);
         }
         self.label = Label::of(view.text, view.block, self.machine);
         let written = self.write(view, out);
         // Where only F was not known before, all is as after the original's block.
-        if known || !view.change.is_none() {
+        let changes = known || within || !view.change.is_none();
+        if changes && around.is_put_back() {
             let left = around == FeedAround::LeftAfter;
             let feed = view.after.feed.filter(|_| !left);
             let after = Mark {
@@ -354,12 +343,16 @@ impl<'m> Rewriter<'m> {
             self.finish(&after, view.knobs, out);
         }
         self.skip.clear();
+        self.feed_mode_back = None;
         written
     }
 
     /// Puts the state right at the end of a program that has no end word.
     pub fn finish(&mut self, last: &Mark, knobs: Option<&KnobState>, out: &mut Vec<u8>) {
         let mut lines = Vec::new();
+        if self.feed_mode_back.take().is_some() {
+            self.back_to_feed_mode(last, &mut lines);
+        }
         self.blend_again(&mut lines);
         self.restore(last, knobs, &mut lines);
         if lines.is_empty() {
@@ -476,6 +469,12 @@ impl<'m> Rewriter<'m> {
         out.extend_from_slice(&self.line_end);
         self.edited_lines += 1;
     }
+}
+
+/// Whether the F of a block is by the minute where the others are by the revolution or an
+/// inverse time.
+fn apart(view: &BlockView<'_>) -> bool {
+    view.change.as_feed && !view.after.per_minute()
 }
 
 /// A G word by its number, times ten.

@@ -7,11 +7,7 @@ use crate::edit::{Edit, apply};
 use crate::interpret::{Motion, MoveKind, Step};
 use crate::machine::{ALL_AXES, AxisValues};
 use crate::source::split_line_end;
-use crate::syntax::{Block, Word, scan_line};
-
-/// Words of a contour that would act otherwise outside of its cycle, G words times ten. G40
-/// does nothing where none of them comes before it.
-const COMPENSATION: [u16; 2] = [410, 420];
+use crate::syntax::{Block, scan_line};
 
 /// A line of a contour that no cycle reads any more: a comment. `None` where it says nothing.
 #[must_use]
@@ -47,8 +43,9 @@ impl Singles<'_> {
     ) -> Result<Vec<u8>, &'static str> {
         let mut lines = Lines::new(of, &place);
         self.first_line(of, &mut lines)?;
+        let mut compensated = false;
         for line in contour {
-            lines.out.extend(without_number(line)?);
+            lines.out.extend(without_number(line, &mut compensated)?);
             lines.out.extend_from_slice(lines.line_end);
         }
         let back = of.steps.iter().rev().find_map(|step| match step {
@@ -56,7 +53,8 @@ impl Singles<'_> {
             _ => None,
         });
         let back = back.ok_or("it does not come back to where it began")?;
-        let mut words = String::from("G0");
+        // G40 stands before the next move: the way back ends where the cycle began.
+        let mut words = String::from(if compensated { "G0 G40" } else { "G0" });
         for axis in ALL_AXES {
             let index = axis as usize;
             if back.moving.contains(index) {
@@ -81,19 +79,21 @@ impl Singles<'_> {
     }
 }
 
-/// A line of a contour without its N word, and without its line end.
-fn without_number(line: &[u8]) -> Result<Vec<u8>, &'static str> {
+/// A line of a contour without its N word, and without its line end; `compensated`: the nose
+/// radius is compensated after it.
+fn without_number(line: &[u8], compensated: &mut bool) -> Result<Vec<u8>, &'static str> {
     let mut block = Block::default();
     scan_line(line, false, &mut block);
     let (text, _) = split_line_end(line);
     if !block.issues.is_empty() {
         return Err("its contour is worked out by the program");
     }
-    let compensates = |word: &Word| {
-        word.letter == b'G' && COMPENSATION.contains(&((word.value * 10.0).round() as u16))
-    };
-    if block.words.iter().any(compensates) {
-        return Err("its contour switches tool nose radius compensation");
+    for word in block.words.iter().filter(|word| word.letter == b'G') {
+        match word.value {
+            40.0 => *compensated = false,
+            41.0 | 42.0 => *compensated = true,
+            _ => {}
+        }
     }
     let mut edits = Vec::new();
     if let Some(number) = block.number {

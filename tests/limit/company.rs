@@ -146,7 +146,7 @@ fn what_stays() {
     refused(
         "fanuc",
         "G21 G90\nG0 X5\nG41 D1 G1 X10 F500\nX400 Y300 F30000 M1\nY0 F500\nG40 X0\nM30\n",
-        "it is under cutter compensation",
+        "it is under cutter compensation, where no line may come between",
     );
 }
 
@@ -243,7 +243,7 @@ fn tools_that_change_when_the_machine_file_says() {
             "reference_mm = 300",
         )
     };
-    let program = "G21 G90 G54\nG1 Z30 F400\nG0 X400 Y290 M6 T2\nG91 G28 X0 Y0 T3 M6\nM30\n";
+    let program = "G21 G90 G54\nG1 Z30. F400\nG0 X400. Y290. M6 T2\nG91 G28 X0 Y0 T3 M6\nM30\n";
     for controller in ["fanuc", "haas"] {
         let refused = shop(controller, "");
         refused.put("a.nc", program);
@@ -262,10 +262,10 @@ fn tools_that_change_when_the_machine_file_says() {
     }
     assert_snapshot!(limited(&shop("fanuc", "before-motion"), program), @r"
     G21 G90 G54
-    G1 Z30 F400
+    G1 Z30. F400
     T2 M6
     G4 P1
-    G9 G1 X400 Y290 F22889.
+    G9 G1 X400. Y290. F22889.
     G0 F400
     T3 M6
     G4 P1
@@ -276,9 +276,9 @@ fn tools_that_change_when_the_machine_file_says() {
     ");
     assert_snapshot!(limited(&shop("fanuc", "after-motion"), program), @r"
     G21 G90 G54
-    G1 Z30 F400
+    G1 Z30. F400
     G4 P1
-    G9 G1 X400 Y290 F22889.
+    G9 G1 X400. Y290. F22889.
     G0 F400
     T2 M6
     G9 G1 X300. Y300. F28296.

@@ -108,19 +108,12 @@ fn rapids_between_two_words() {
         text.contains("N1 G9 G1 Z-5. F300\nG9 G1 X1000. Y800."),
         "{text}"
     );
-    // A block that is blended with a feed in one run must not be stopped; nor can one be that
-    // has a reason to stay as it is.
-    for program in [
-        "V1=1\nN1 G1 X5. F300\nIF [V1 EQ 2] N2\nG0 X1000. Y800.\nV1=2\nGOTO N1\nN2 G1 X9. Y9.\nM30\n",
-        "G41 D1 G1 X5. Y5. F300\nX50.\nG0 X1000. Y800.\nG40 X0.\nM30\n",
-    ] {
-        let (code, _, errors) = limited_to_600_w(program);
-        assert_eq!(code, 1, "{program}");
-        assert!(
-            errors.contains("without its stop") || errors.contains("compensation"),
-            "{errors}"
-        );
-    }
+    // A block that is blended with a feed in one run must not be stopped.
+    let program = "V1=1\nN1 G1 X5. F300\nIF [V1 EQ 2] N2\nG0 X1000. Y800.\nV1=2\nGOTO N1\nN2 G1 \
+                   X9. Y9.\nM30\n";
+    let (code, _, errors) = limited_to_600_w(program);
+    assert_eq!(code, 1, "{program}");
+    assert!(errors.contains("without its stop"), "{errors}");
 }
 
 /// Where no word for one block is known, G61 stands before both and G64 after them; among feeds per
@@ -184,8 +177,8 @@ fn rapids_after_g64() {
     assert_eq!(code, 0, "{errors}");
     assert_eq!(
         text,
-        "G1 X1000. Y800. F26404\nG0\nG64\nG1 X5. F500\nG61\nX8.\nG64\nG61\n\
-         G1 X1008. Y0. F26404\nG64\nG0 F500\nG1 X3. F400\nM30\n"
+        "G1 X1000. Y800. F26404\nG64\nG1 X5. F500\nG61\nX8.\nG1 X1008. Y0. F26404\nG64\n\
+         G1 X3. F400\nM30\n"
     );
     let (code, _, errors) = limited(&shop, &text, "--allow feed");
     assert_eq!(code, 0, "{errors}");
@@ -214,16 +207,12 @@ fn a_control_without_the_word() {
     }
 }
 
-/// Nothing is put into blocks under compensation, with a path mode of their own, and where the
+/// Nothing is put into blocks with a path mode of their own, and where the
 /// start is not known or nothing of the control is to be relied on.
 #[test]
 fn where_no_stop_is_put() {
     let plain = "G1 X1000. F20000.\nY1000.\n";
     for (program, options) in [
-        (
-            format!("G21 G90 G64\nG41 D1 G1 X10. Y10. F2000.\n{plain}G40 X0. Y0.\nM30\n"),
-            "",
-        ),
         (
             "G21 G90 G64\nG64 G1 X1000. F20000.\nG64 Y1000.\nM30\n".to_owned(),
             "",

@@ -329,14 +329,6 @@ fn what_is_not_written_out_is_said() {
             .replace("G71", "G42 G1 X63. F0.2\nG71"),
         "it runs under tool nose radius compensation",
     );
-    // Neither is then the cycle that takes away the contour which another one needs.
-    let compensated = contour
-        .replace("G1 Z", "G1 G42 Z")
-        .replace("N20", "N20 G40");
-    stays(
-        &format!("G71 P10 Q20 U0.4 D8. R1. F0.3\n{compensated}G0 X64. Z3.\nG70 P10 Q20 F0.1\n"),
-        "its contour switches tool nose radius compensation",
-    );
     stays(
         "/G90 X50. Z-80. F0.2\nG0 X66. Z4.\n",
         "its block may be skipped, or is worked out by the program",

@@ -180,10 +180,6 @@ fn where_blocks_run_into_each_other_the_bound_holds() {
 fn where_no_word_can_stand_none_is_written() {
     let cases = [
         (
-            "$TC_DP6[1,1]=5\nT1 D1\nG1 G41 X10 Y10 F1000\nX400 F30000\nY20\nG40 X410 Y30\nM30\n",
-            "the block may not be changed: it is under cutter compensation",
-        ),
-        (
             "M3 S3000\nG0 X0\nG33 X200 I10\nM30\n",
             "the block may not be changed: it moves in step with the spindle",
         ),
@@ -202,6 +198,11 @@ fn where_no_word_can_stand_none_is_written() {
         assert!(!summary.certified, "{program}");
         assert_eq!(summary.reasons[0].message, reason, "{program}");
     }
+    // Under compensation F alone can.
+    let program =
+        "$TC_DP6[1,1]=5\nT1 D1\nG1 G41 X10 Y10 F1000\nX400 F30000\nY20\nG40 X410 Y30\nM30\n";
+    let text = fits(&SINUMERIK, How::Optimal, program);
+    assert!(text.contains("\nX400 F") && !text.contains("ACC"), "{text}");
 }
 
 /// Feeds by time and by the revolution keep their F: a lower acceleration is no other feed.

@@ -21,8 +21,10 @@ pub struct Permit {
     /// The axes stand before and after it, or may be made to by exact stop: a knob may be
     /// turned for which they have to.
     pub stands: bool,
-    /// A line may come between it and the block before it.
+    /// A line may come between it and the block before it, though both move.
     pub line_before: bool,
+    /// Knobs may be turned on lines before it, and back after it.
+    pub knobs: bool,
     /// What it changes is put back right after it, since other blocks may come then.
     pub apart: bool,
     /// A word in the block can let it end at rest where the control would blend it with

@@ -112,7 +112,8 @@ fn rapid_knob(machine: &Machine, permit: &Permit) -> Option<usize> {
                 _ => false,
             }
     };
-    knobs.iter().position(suits)
+    let knob = || knobs.iter().position(suits);
+    permit.knobs.then(knob).flatten()
 }
 
 /// Whether the axes stand for a knob where its word is put back right away: a feed costs less.
@@ -148,6 +149,12 @@ pub(super) fn speed_knob(machine: &Machine, mv: &Move) -> Option<usize> {
     moves
         .then(|| machine.controller.knobs.iter().position(suits))
         .flatten()
+}
+
+/// The same where a line with its word may come before the block.
+pub(super) fn speed_cap(machine: &Machine, mv: &Move, permit: &Permit) -> Option<usize> {
+    let knob = || speed_knob(machine, mv);
+    permit.knobs.then(knob).flatten()
 }
 
 /// The knob for acceleration that acts on a move: one along the path where there is such
@@ -195,13 +202,13 @@ pub(super) fn levers(machine: &Machine, how: LimitOptions, mv: &Move, permit: &P
     }
     let acts = |index: &usize| {
         let knob = machine.controller.knobs.get(*index);
-        knob.is_some_and(|knob| permit.stands || !knob.stands())
+        knob.is_some_and(|knob| permit.knobs && (permit.stands || !knob.stands()))
     };
     if mv.kind != MoveKind::Rapid {
         let speed = if permit.feed_word {
             Some(SpeedLever::FeedWord)
         } else {
-            speed_knob(machine, mv).map(SpeedLever::Cap)
+            speed_cap(machine, mv, permit).map(SpeedLever::Cap)
         };
         return Levers {
             speed: speed.filter(|_| how.allowed.feed || permit.positions),

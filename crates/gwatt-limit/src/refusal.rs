@@ -2,7 +2,7 @@
 
 use super::case::Case;
 use super::change::Change;
-use super::lever::{FEED_NOT_ALLOWED, NO_KNOB, Obstacle, SpeedLever, UNTOUCHABLE, speed_knob};
+use super::lever::{FEED_NOT_ALLOWED, NO_KNOB, Obstacle, SpeedLever, UNTOUCHABLE, speed_cap};
 use super::options::{Allowed, LimitOptions};
 use super::solver::Solver;
 use gwatt_machine::{AxisSet, RapidKnob, RapidPath};
@@ -24,7 +24,7 @@ const BELOW_CLEARANCE: &str = "where the control moves them along a line (a para
 impl Solver<'_> {
     pub(super) fn no_speed_lever(&self, case: Case<'_>) -> Obstacle {
         let Case { mv, permit, .. } = case;
-        let capped = speed_knob(self.machine, mv);
+        let capped = speed_cap(self.machine, mv, permit);
         if !permit.edit || mv.kind != MoveKind::Rapid && !permit.feed_word && capped.is_none() {
             return Obstacle::new(
                 UNTOUCHABLE,

@@ -42,11 +42,13 @@ impl Solver<'_> {
     }
 
     /// Such a feed as it runs where the dwells that make the stops leave it only half
-    /// of its acceleration: `LinuxCNC` has no element after it to blend with.
+    /// of its acceleration: `LinuxCNC` has no element after it to blend with. From a place
+    /// that is not known it counts with all of it.
     pub(super) fn halved(&self, rapid: &Move, changed: &Move) -> Option<Move> {
         let planner = &self.machine.controller.planner;
         let rule = planner.look_ahead.map(|rules| rules.corner);
         let halves = self.gets_stops(rapid, changed)
+            && changed.unknown_start.is_empty()
             && planner.dwell_stops
             && changed.path_mode == PathMode::LookAhead
             && matches!(changed.corner, Corner::Round { .. })

@@ -20,7 +20,7 @@ use super::{Failure, LimitSummary, Options, Summary};
 pub(super) use trace::{OriginalRows, Traced, WRITTEN_OUT};
 
 use crate::diagnostic::Diagnostic;
-use crate::interpret::{Interpreter, Step};
+use crate::interpret::{Interpreter, NO_POINT, Step};
 use crate::limit::{NO_KNOB, UNTOUCHABLE};
 use crate::machine::Machine;
 use crate::rewrite::{CycleBlock, Singles};
@@ -218,8 +218,15 @@ fn survey(program: &[u8], machine: &Machine, paths: &[Options]) -> Result<Vec<Se
     let language = &machine.controller.language;
     let mut all: Vec<Series> = Vec::new();
     if language.family.facts().writes_out_cycles {
+        let mut assumed = false;
         for options in paths {
-            survey_path(program, machine, options, &mut all)?;
+            assumed |= survey_path(program, machine, options, &mut all)?;
+        }
+        // Places that are written with a point would be others than the program's.
+        for series in all.iter_mut().filter(|_| assumed) {
+            if let Some(line) = series.numbers.keys().next().copied() {
+                series.refuse(line, WITHOUT_POINT);
+            }
         }
     }
     Ok(all)
@@ -265,13 +272,14 @@ fn take_in(
     series.numbers.insert(number, n_word);
 }
 
-/// The series on one path through the program.
+/// The series on one path through the program. True where numbers without a point count as
+/// whole units, and the control may take them otherwise.
 fn survey_path(
     program: &[u8],
     machine: &Machine,
     options: &Options,
     all: &mut Vec<Series>,
-) -> Result<(), Failure> {
+) -> Result<bool, Failure> {
     let singles = Singles::new(machine);
     let lathe = machine.controller.language.dialect.lathe.is_some();
     let mut front = Executor::new(Cursor::new(program), machine, options);
@@ -280,6 +288,8 @@ fn survey_path(
     let mut rigid = false;
     let mut texts: Option<Vec<&[u8]>> = None;
     let mut before = returns::Before::of(front.interpreter().modal());
+    // The radius of the tool's nose is compensated.
+    let mut compensated = false;
     while let Some(line) = front.next_line()? {
         let (facts, interpreter) = (&*line.facts, line.interpreter);
         if let Some(cycle) = facts.called {
@@ -299,6 +309,10 @@ fn survey_path(
             }
         }
         before = returns::Before::of(interpreter.modal());
+        // What a contour has switched on is a matter of its cycle.
+        let by_contour = facts.contour.is_some() && !compensated;
+        let after = interpreter.chooses_radius() && !by_contour;
+        let compensated = std::mem::replace(&mut compensated, after);
         if !facts.cycle {
             continue;
         }
@@ -308,7 +322,7 @@ fn survey_path(
             close(&mut open, all);
             // One that only gives values for the next cycle moves nothing, and stays.
             if line.steps.iter().any(Step::moves_axes) {
-                let series = turning::series(&line, word, fixed, program, &singles);
+                let series = turning::series(&line, (word, compensated), fixed, program, &singles);
                 close(&mut Some(series), all);
             }
             continue;
@@ -339,7 +353,10 @@ fn survey_path(
         rigid |= line.block.words.iter().any(is_rigid);
         let taps = TAPS.contains(&interpreter.cycle()) && singles.motion_survives_cycles();
         let fixed = fixed.or((rigid && taps).then_some(RIGID));
-        let turned = || turning::stays(&line, interpreter.cycle()).filter(|_| lathe);
+        let turned = || {
+            turning::stays(&line, interpreter.cycle(), interpreter.chooses_radius())
+                .filter(|_| lathe)
+        };
         let fixed = fixed.or_else(turned);
         if let Some(why) = fixed {
             series.refuse(number, why);
@@ -353,7 +370,8 @@ fn survey_path(
         );
     }
     close(&mut open, all);
-    Ok(())
+    let mut notes = front.diagnostics.list.iter();
+    Ok(notes.any(|note| note.rule == NO_POINT))
 }
 
 /// The word of a turning cycle along a contour, which is not modal.
@@ -371,6 +389,9 @@ fn is_rigid(word: &Word) -> bool {
 const TAPS: [u16; 2] = [740, 840];
 /// Why such a tap stays as it is.
 const RIGID: &str = "M29 before it makes it rigid, which ends with any other motion word";
+/// Why nothing is written in another way where places could mean something else then.
+const WITHOUT_POINT: &str = "numbers of the program have no decimal point, and what they mean is \
+     not known: say decimal_point under [language] of the machine file";
 /// Words that hold until a cycle ends.
 const HELD: &[u8] = b"ZRQPIJ";
 /// Why a line that runs several times stays as it is.

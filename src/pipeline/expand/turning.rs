@@ -7,7 +7,7 @@ use super::{Lines, Series};
 use crate::pipeline::executor::Line;
 use crate::rewrite::{CycleBlock, Singles, contour_as_comment};
 use crate::source::lines;
-use crate::syntax::{Block, Word};
+use crate::syntax::{Block, Word, scan_line};
 
 /// What is said where such a cycle stays as it is.
 pub(super) const STAYS: &str = "the turning cycle is not written out";
@@ -25,25 +25,64 @@ pub(super) fn word(block: &Block) -> Option<Word> {
 }
 
 /// Why a turning cycle of a block may not be written out; `number` is that of the cycle,
-/// times ten.
-pub(super) fn stays(line: &Line<'_, '_>, number: u16) -> Option<&'static str> {
+/// times ten, and `compensated` says whether the nose radius is compensated around it.
+pub(super) fn stays(line: &Line<'_, '_>, number: u16, compensated: bool) -> Option<&'static str> {
     if THREADS.contains(&number) {
         return Some("it cuts a thread");
     }
-    if line.facts.compensated || line.interpreter.chooses_radius() {
+    if compensated {
         return Some("it runs under tool nose radius compensation");
     }
     line.facts.guessed
 }
 
-/// What such a block becomes, with the blocks of its contour.
+/// Whether the nose radius is compensated around a cycle: before it, or after it, where the
+/// contour has switched that on and nothing switches it off before the next move.
+fn is_compensated(line: &Line<'_, '_>, before: bool, program: &[u8]) -> bool {
+    let (_, number) = line.key;
+    let last = match line.facts.contour {
+        Some([_, last]) if last > number => last,
+        _ => number,
+    };
+    before || line.interpreter.chooses_radius() && !is_switched_off(program, last)
+}
+
+/// Whether G40 comes after a line before anything that moves, or that leads elsewhere.
+fn is_switched_off(program: &[u8], line: u64) -> bool {
+    let mut block = Block::default();
+    for text in lines(program).skip(line as usize) {
+        scan_line(text, false, &mut block);
+        let is = |letter, value| {
+            let mut words = block.words.iter();
+            words.any(|word: &Word| word.letter == letter && word.value == value)
+        };
+        // The contour of a finishing cycle switches it on for itself.
+        if is(b'G', 40.0) || is(b'G', 70.0) {
+            return block.delete_level == 0;
+        }
+        let harmless = |word: &Word| match word.letter {
+            b'S' | b'F' => true,
+            b'M' => (3.0..=9.0).contains(&word.value) && word.value != 6.0,
+            b'G' => (96.0..=99.0).contains(&word.value),
+            _ => false,
+        };
+        if !block.issues.is_empty() || !block.words.iter().all(harmless) {
+            return false;
+        }
+    }
+    false
+}
+
+/// What such a block becomes, with the blocks of its contour; `compensated`: the nose radius
+/// was, before it.
 pub(super) fn series(
     line: &Line<'_, '_>,
-    word: Word,
+    (word, compensated): (Word, bool),
     fixed: Option<&'static str>,
     program: &[u8],
     singles: &Singles<'_>,
 ) -> Series {
+    let compensated = is_compensated(line, compensated, program);
     let (_, number) = line.key;
     let cycle = CycleBlock {
         text: line.text,
@@ -55,7 +94,7 @@ pub(super) fn series(
         motion_before: line.interpreter.modal().motion,
     };
     let contour = line.facts.contour;
-    let written = match fixed.or_else(|| stays(line, cycle.number)) {
+    let written = match fixed.or_else(|| stays(line, cycle.number, compensated)) {
         Some(why) => Err(why),
         None => write(&cycle, contour, number, program, singles, line),
     };

@@ -17,6 +17,8 @@ use crate::power::{Assessment, Assessor, Certificate, PowerModel, Want};
 
 /// Moves that are limited and judged in all rounds together.
 const EFFORT: usize = 200_000;
+/// How many such moves one takes that is divided.
+const IN_PIECES: usize = 1_000;
 /// How many times as long a move takes where drives make something of steps of speed.
 const STEPS: usize = 8;
 
@@ -101,6 +103,7 @@ impl<'m> Trial<'m> {
         while done < EFFORT {
             done += each * self.moves.len().max(1);
             let outcomes = self.decide(options, how, &depths)?;
+            done += IN_PIECES * outcomes.iter().filter(|it| is_split(it)).count();
             let found = self.judge(options, &outcomes);
             if found.deeper.is_empty() {
                 return found.duration_s;

@@ -153,9 +153,14 @@ impl<'m, 'p> Original<'m, 'p> {
                 let known = files.len();
                 files.extend(line.files.iter().skip(known).cloned());
                 for step in &*line.steps {
+                    let key = match step {
+                        // It may have waited for this line.
+                        Step::Move(mv) if line.facts.compensated => (mv.text, mv.line),
+                        _ => line.key,
+                    };
                     waiting.steps.push_back(Held {
                         step: step.clone(),
-                        key: line.key,
+                        key,
                         ordinal: *ordinal,
                         feed,
                         assessment: None,

@@ -16,6 +16,8 @@ use crate::pipeline::expand::Expanded;
 use crate::pipeline::looped_program::{Decided, LoopedProgram, Source, write};
 use crate::pipeline::rounds::last_round;
 use crate::pipeline::row::Detail;
+use crate::pipeline::table::Table;
+use crate::pipeline::ways::turns_switches;
 use crate::pipeline::worst::worst_of;
 use crate::pipeline::{Failure, LimitOptions, LimitSummary, Options, RestartRows, RowSink};
 use crate::power::{Ladder, Lower};
@@ -161,8 +163,9 @@ impl<'a> Job<'a> {
                     rungs: &round.rungs,
                 })
                 .collect();
-            let (decided, table) =
-                whole.decide(&sources, count as u16, Detail::of(rows.as_deref()))?;
+            let skips = paths.iter().any(|paths| turns_switches(paths));
+            let table = Table::new(skips).with_files(count as u16);
+            let (decided, table) = whole.decide(&sources, table, Detail::of(rows.as_deref()))?;
             let first = paths.iter().flatten().next();
             let comment = first.and_then(|it| it.comment(self.machine));
             let files = self.shelf.files().enumerate().map(|(number, (path, _))| {

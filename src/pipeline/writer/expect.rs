@@ -39,16 +39,15 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             self.spindle.write();
             let hopeless = outcome.obstacle.is_some();
             let found = (mv, &*outcome);
-            self.presets
-                .take(&self.limiter, found, entry.text_of(mv), false);
+            self.presets.take(&self.limiter, found, &entry.text, false);
             let split = outcome.split.as_deref();
             if self.limiter.splits() && change.is_some() && split.is_none() {
                 let reason = outcome.unsplit.unwrap_or(BLENDED);
-                self.unsplit.stays(mv, reason, entry.text_of(mv));
+                self.unsplit.stays(mv, reason, &entry.text);
             }
             if let Some(obstacle) = outcome.obstacle.take() {
-                self.stop_is_wanted |= self.wants_stop(mv);
-                self.reasons.refuse(mv, &obstacle, entry.text_of(mv));
+                self.stop_is_wanted |= self.wants_stop(mv, &entry.facts);
+                self.reasons.refuse(mv, &obstacle, &entry.text);
             }
             // What a block gets, all its moves get, but not its dwell.
             let change = change.filter(|_| mv.kind != MoveKind::Dwell);

@@ -7,6 +7,7 @@ use crate::interpret::{Move, Step};
 use crate::pipeline::drive::{MoveSink, drive_end, drive_line_end, drive_step};
 use crate::pipeline::entry::Entry;
 use crate::pipeline::judge::{Flight, Judge, Queue};
+use crate::pipeline::own_steps::hand_back;
 use crate::pipeline::row::Detail;
 use crate::pipeline::spindle_rows::SpindleRows;
 use crate::pipeline::totals::Totals;
@@ -34,31 +35,33 @@ impl MoveSink for Counted<'_, '_> {
 }
 
 impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
-    /// Lets a block wait, and judges its moves.
+    /// Lets a block wait, and judges its moves, and those that it lets earlier blocks have.
     pub(super) fn judge_waiting(&mut self, entry: Box<Entry>) {
-        let number = self.first + self.entries.len() as u64;
+        let moved = entry.moves_on();
         self.entries.push_back(entry);
-        let mut mode = self.mode;
+        let mut placed = std::mem::take(&mut self.placed);
+        hand_back(&mut self.entries, &mut self.mode, &mut placed);
         let (assessor, mut counted) = self.counted();
+        let first = counted.judge.queue.first;
         let entries = counted.judge.queue.entries;
-        let Some(entry) = entries.back() else { return };
-        for (index, step) in entry.steps.iter().enumerate() {
-            let text = match step {
-                Step::Move(mv) => {
-                    mode = mv.path_mode;
-                    counted.judge.queue.flights.push_back(Flight {
-                        entry: number,
-                        step: index,
-                        assessment: None,
-                    });
-                    entry.text_of(mv)
-                }
-                Step::Action(_) => b"",
+        for (number, step) in placed.iter().copied() {
+            let Some(entry) = entries.get(number) else {
+                continue;
             };
-            drive_step(assessor, step, text, &mut counted);
+            let Some(taken) = entry.steps.get(step) else {
+                continue;
+            };
+            if matches!(taken, Step::Move(_)) {
+                counted.judge.queue.flights.push_back(Flight {
+                    entry: first + number as u64,
+                    step,
+                    assessment: None,
+                });
+            }
+            drive_step(assessor, taken, &entry.text, &mut counted);
         }
-        drive_line_end(assessor, entry.moves_on(), &mut counted);
-        self.mode = mode;
+        drive_line_end(assessor, moved, &mut counted);
+        self.placed = placed;
     }
 
     /// What judges moves, and what takes them then.
@@ -115,7 +118,7 @@ impl<'m, R: Read + Seek, W: Write> Writer<'m, R, W> {
                 continue;
             }
             assessor.want = self.detail.want(tally.want());
-            assessor.push(mv, entry.text_of(mv), &mut |judged, assessment, text| {
+            assessor.push(mv, &entry.text, &mut |judged, assessment, text| {
                 tally.add(judged, assessment, text);
                 if spindle.judge(judged, assessment) {
                     decide(assessment);

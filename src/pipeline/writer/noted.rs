@@ -8,6 +8,7 @@ use crate::machine::Machine;
 use crate::pipeline::Failure;
 use crate::pipeline::entry::Entry;
 use crate::pipeline::split::SEVERAL_RUNS;
+use crate::pipeline::stop_before::stops_by_word;
 use crate::pipeline::table::Table;
 
 /// Why a block before any motion word is not changed where one of them cannot have its own.
@@ -22,9 +23,10 @@ impl Table {
         let without = entry.facts.no_motion_word && !self.may_get_word();
         let without = without.then_some(NO_MOTION_WORD);
         let fixed = entry.facts.fixed.or(without);
-        entry.facts.fixed = fixed.or_else(|| self.fixed(entry.key));
+        let fixed = fixed.or_else(|| self.fixed(entry.key));
+        entry.facts.fixed = fixed.or_else(|| self.fixed_under_compensation(entry));
         entry.one_corner = self.one_corner(entry.key);
-        entry.stop_before = machine.controller.stops_by_word() && self.may_stop_before(entry.key);
+        entry.stop_before = stops_by_word(machine, &entry.facts) && self.may_stop_before(entry.key);
         entry.without_feed = !self.may_get_feed();
     }
 }
@@ -48,7 +50,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
         while self
             .entries
             .front()
-            .is_some_and(|entry| entry.decided.len() >= entry.moves)
+            .is_some_and(|entry| !entry.awaits && entry.decided.len() >= entry.moves)
         {
             let Some(entry) = self.entries.pop_front() else {
                 break;
@@ -65,11 +67,11 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
             let moves = entry.its_moves().zip(&entry.decided);
             let lowered = moves.into_iter().find(|(_, (_, it))| it.change.is_some());
             if let Some((mv, _)) = lowered {
-                self.unsplit.stays(mv, SEVERAL_RUNS, entry.text_of(mv));
+                self.unsplit.stays(mv, SEVERAL_RUNS, &entry.text);
             }
         }
         for (mv, (_, outcome)) in entry.its_moves().zip(&entry.decided) {
-            let text = entry.text_of(mv);
+            let text = &entry.text;
             self.presets.take(&self.limiter, (mv, outcome), text, true);
         }
         let own = if entry.facts.no_motion_word {
@@ -95,7 +97,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
         }
         for (mv, (_, outcome)) in entry.its_moves().zip(&entry.decided) {
             if let Some(obstacle) = outcome.obstacle.as_deref() {
-                self.reasons.refuse(mv, obstacle, entry.text_of(mv));
+                self.reasons.refuse(mv, obstacle, &entry.text);
             }
         }
     }

@@ -3,11 +3,11 @@
 use std::io::{Read, Seek, Write};
 
 use super::Writer;
-use crate::interpret::{Move, MoveKind};
+use crate::interpret::{Facts, Move, MoveKind};
 use crate::limit::Change;
 use crate::machine::PathMode;
 use crate::pipeline::entry::Entry;
-use crate::pipeline::stop_before::Stopping;
+use crate::pipeline::stop_before::{Stopping, stops_by_word};
 
 impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
     /// Stops blocks as a first look at the program has shown.
@@ -24,11 +24,11 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
     }
 
     /// Whether a rapid that cannot be lowered might be, were the block before it known.
-    pub(super) fn wants_stop(&self, mv: &Move) -> bool {
+    pub(super) fn wants_stop(&self, mv: &Move, facts: &Facts) -> bool {
         self.stopping.is_none()
             && mv.kind == MoveKind::Rapid
             && mv.path_mode == PathMode::LookAhead
-            && self.machine.controller.stops_by_word()
+            && stops_by_word(self.machine, facts)
     }
 
     /// The change of a block with the word, where a rapid after it becomes a feed.
@@ -36,7 +36,10 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
         let Some(stopping) = &self.stopping else {
             return change;
         };
-        if !stopping.stands_before(entry.key) && entry.needs_stops(self.machine, change.as_ref()) {
+        if stops_by_word(self.machine, &entry.facts)
+            && !stopping.stands_before(entry.key)
+            && entry.needs_stops(self.machine, change.as_ref())
+        {
             // It was no feed at the first look.
             let message = "the block before it would have to stop".to_owned();
             let help = "write the move as a feed by hand, with an exact stop before it";

@@ -1,7 +1,8 @@
 //! Cutter compensation of the blocks as they come.
 
 use super::fault::Fault;
-use super::{Compensation, FIXED, State};
+use super::{Compensation, State};
+use crate::code::GCode;
 use crate::control::{Control, Run};
 use crate::execute::Interpreter;
 use gwatt_machine::CompensationLead;
@@ -73,12 +74,12 @@ impl Control<'_> {
         let Some(mut compensation) = self.compensation.take() else {
             return;
         };
+        let switches = run.words.groups & GCode::CompensationOff.group() != 0;
+        if compensation.is_on() || compensation.holds() || switches {
+            run.facts.compensated = true;
+        }
         if compensation.state == State::Off && !compensation.holds() {
             return;
-        }
-        if compensation.is_on() || compensation.holds() {
-            run.facts.fixed = Some(FIXED);
-            run.facts.compensated = true;
         }
         if compensation.passive {
             self.compensation = Some(compensation);

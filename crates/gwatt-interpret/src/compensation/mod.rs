@@ -33,8 +33,6 @@ use super::vector::Vector;
 use gwatt_machine::{CompensationLead, CutterCompensation};
 use gwatt_motion::{Move, Step};
 
-/// Why blocks under compensation stay as they are.
-const FIXED: &str = "it is under cutter compensation";
 /// Longest text of a line that is kept.
 const TEXT_MAX: usize = 256;
 
