@@ -32,6 +32,7 @@ mod column_map;
 mod command_input;
 mod data;
 mod delay_profile;
+mod descent;
 mod described;
 mod discrete;
 mod disturbance;

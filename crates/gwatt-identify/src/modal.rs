@@ -6,8 +6,11 @@
 //! being at its best for them (Golub & Pereyra 1973, "variable projection"): a
 //! search for zeros next to them comes to rest in many more wrong places.
 
+use std::cell::OnceCell;
+
 use nalgebra::{Cholesky, Complex, Matrix4, Vector4};
 
+use super::descent::{Damping, Descending, Step, descend};
 use super::normal::{Normal, Solution};
 use super::parameters::{is_admissible, parameters, probes, with};
 use super::places::{numbered, thinned};
@@ -24,6 +27,15 @@ const FAR: f64 = 20.0;
 const SPARSE: usize = 400;
 /// Modes damped less than this are looked for in the band only.
 const QUIET: f64 = 0.1;
+
+const DAMPING: Damping = Damping {
+    now: 1e-3,
+    least: 1e-9,
+    most: 1e5,
+};
+/// An improvement below this share of one row's squares ends the search: what is found is
+/// a start.
+const ENOUGH: f64 = 1e-2;
 
 /// A delay: whole periods, and a part of one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -148,57 +160,10 @@ impl Lines {
 
     /// Moves the poles until nothing is gained, for so many steps at most.
     #[must_use]
-    pub fn move_poles(&self, mut modes: Modes, steps: usize) -> Modes {
-        let mut damping = 1e-3;
-        let mut slopes: Option<Vec<Vec<f64>>> = None;
-        for _ in 0..steps {
-            if slopes.is_none() {
-                slopes = self.slopes(&modes);
-            }
-            let Some(columns) = &slopes else { break };
-            let count = columns.len();
-            if count == 0 {
-                break;
-            }
-            let mut normal = Normal::new(count + modes.columns.len());
-            let all: Vec<&[f64]> = columns
-                .iter()
-                .chain(&modes.columns)
-                .map(Vec::as_slice)
-                .collect();
-            let all: Vec<(usize, &[f64])> = all.into_iter().enumerate().collect();
-            normal.add_columns(&all, &modes.left);
-            let model = of_poles(&modes.poles);
-            let next = normal.solve_from(0, damping).and_then(|step| {
-                let mut theta = parameters(&model, false);
-                for (value, step) in theta.iter_mut().skip(1).zip(step.x.iter().take(count)) {
-                    *value += step;
-                }
-                let next = with(&model, &theta);
-                is_admissible(&next, self.period_s).then_some(next)
-            });
-            let next = next.and_then(|next| self.at(&next.poles, modes.late, modes.taps));
-            match next {
-                Some(next) if next.rest <= modes.rest => {
-                    let gained = modes.rest - next.rest;
-                    modes = next;
-                    slopes = None;
-                    damping = (damping * 0.1).max(1e-9);
-                    if gained < 1e-2 * modes.rest / self.rows() as f64
-                        || modes.rest < 1e-14 * self.power
-                    {
-                        break;
-                    }
-                }
-                _ => {
-                    damping *= 10.0;
-                    if damping > 1e5 {
-                        break;
-                    }
-                }
-            }
-        }
-        modes
+    pub fn move_poles(&self, modes: Modes, steps: usize) -> Modes {
+        let task = PoleTask { lines: self, steps };
+        let first = modes.clone();
+        descend(&task, PolePlace::of(first), DAMPING).map_or(modes, |(at, _)| at.modes)
     }
 
     /// Bayes' information criterion.
@@ -336,6 +301,69 @@ impl Lines {
             delay_s: (modes.late.lag as f64 + modes.late.part) * t,
         })
         .filter(|model| model.gain.is_finite() && model.gain != 0.0)
+    }
+}
+
+/// Poles on their way down.
+struct PoleTask<'a> {
+    lines: &'a Lines,
+    steps: usize,
+}
+
+/// Modes, and how the output changes with their poles once a step has needed it.
+struct PolePlace {
+    modes: Modes,
+    slopes: OnceCell<Option<Vec<Vec<f64>>>>,
+}
+
+impl PolePlace {
+    fn of(modes: Modes) -> Self {
+        Self {
+            modes,
+            slopes: OnceCell::new(),
+        }
+    }
+}
+
+impl Descending for PoleTask<'_> {
+    type Place = PolePlace;
+
+    fn squares(&self, at: &PolePlace) -> f64 {
+        at.modes.rest
+    }
+
+    fn goes_on(&self, round: usize, _: &PolePlace) -> bool {
+        round < self.steps
+    }
+
+    fn step(&self, _: usize, at: &PolePlace, damping: f64) -> Step<PolePlace> {
+        let (lines, modes) = (self.lines, &at.modes);
+        let slopes = at.slopes.get_or_init(|| lines.slopes(modes)).as_ref();
+        let Some(slopes) = slopes.filter(|slopes| !slopes.is_empty()) else {
+            return Step::GivenUp;
+        };
+        let count = slopes.len();
+        let mut normal = Normal::new(count + modes.columns.len());
+        let all = slopes.iter().chain(&modes.columns).map(Vec::as_slice);
+        let all: Vec<(usize, &[f64])> = all.enumerate().collect();
+        normal.add_columns(&all, &modes.left);
+        let model = of_poles(&modes.poles);
+        let next = normal.solve_from(0, damping).and_then(|step| {
+            let mut theta = parameters(&model, false);
+            for (value, step) in theta.iter_mut().skip(1).zip(step.x.iter().take(count)) {
+                *value += step;
+            }
+            let next = with(&model, &theta);
+            is_admissible(&next, lines.period_s).then_some(next)
+        });
+        next.and_then(|next| lines.at(&next.poles, modes.late, modes.taps))
+            .map_or(Step::Nowhere, |next| Step::To(PolePlace::of(next)))
+    }
+
+    fn is_enough(&self, _: usize, before: &PolePlace, after: &PolePlace) -> bool {
+        let (before, after) = (before.modes.rest, after.modes.rest);
+        before - after < ENOUGH * after / self.lines.rows() as f64
+            || after < 1e-14 * self.lines.power
     }
 }
 

@@ -17,6 +17,7 @@ use nalgebra::DMatrix;
 
 use super::charge::charge;
 use super::data::{Data, Signals};
+use super::descent::{Damping, Descending, Step, descend};
 use super::figure::Figure;
 use super::normal::{Normal, Solution};
 use super::parameters::{is_admissible, parameters, with};
@@ -212,10 +213,15 @@ impl<'a> Fitting<'a> {
             friction: raw.friction.len(),
             from_command: raw.from_command,
             power: self.power,
-            damping: match effort.steps {
-                _ if raw.leak == 0.0 => DAMPING,
-                STEPS_MAX => DAMPING_LAST,
-                _ => DAMPING_LEAKY,
+            effort,
+            damping: Damping {
+                now: match effort.steps {
+                    _ if raw.leak == 0.0 => DAMPING,
+                    STEPS_MAX => DAMPING_LAST,
+                    _ => DAMPING_LEAKY,
+                },
+                least: 1e-12,
+                most: 1e6,
             },
             enough: match effort.steps {
                 STEPS_MAX => LEAST_GAIN,
@@ -224,11 +230,15 @@ impl<'a> Fitting<'a> {
             },
             samples: raw.len(),
         };
-        let Descent {
-            mut transfer,
-            mut normal,
+        let start = task.place(start.clone())?;
+        let (
+            Place {
+                mut transfer,
+                mut normal,
+                ..
+            },
             steps,
-        } = task.descend(start, effort)?;
+        ) = descend(&task, start, task.damping)?;
         if data.undisturbed.is_some() {
             (transfer, normal) = instrumental(data, transfer, delay_is_free, left_out)?;
         }
@@ -269,90 +279,87 @@ struct Task<'a> {
     /// Sum of squares of the output.
     power: f64,
     samples: usize,
-    /// Of the first step.
-    damping: f64,
+    effort: Effort,
+    damping: Damping,
     /// The share of one row's squares below which an improvement ends the search.
     enough: f64,
 }
 
-/// Where a descent came to.
-struct Descent {
+/// Where a search stands.
+struct Place {
     transfer: TransferFunction,
     normal: Normal,
-    steps: usize,
+    /// The sum of squares with offset and first state at their best.
+    least: f64,
+}
+
+impl Descending for Task<'_> {
+    type Place = Place;
+
+    fn squares(&self, at: &Place) -> f64 {
+        at.least
+    }
+
+    /// What is near to the criterion that is to be beaten is worth more steps.
+    fn goes_on(&self, round: usize, at: &Place) -> bool {
+        let Effort { steps, to_beat } = self.effort;
+        let is_near = || self.missing(at) <= CRITERION_MARGIN && to_beat != f64::MAX;
+        round < steps || (round < LONGER * steps && is_near())
+    }
+
+    fn step(&self, round: usize, at: &Place, damping: f64) -> Step<Place> {
+        let Some(step) = at.normal.solve_from(0, damping) else {
+            return Step::Unsolved;
+        };
+        // What the step promises, taken as straight: without hope there is no
+        // need to look.
+        let missing = self.missing(at);
+        if (1..4).contains(&round) && missing > GIVE_UP_RATIO * CRITERION_MARGIN {
+            let promised = libm::log(at.least / step.rest.max(ROUNDING * self.power));
+            if at.normal.rows as f64 * promised < 0.2 * missing {
+                return Step::GivenUp;
+            }
+        }
+        let next = moved(&at.transfer, self.delay_is_free, step.x.as_slice());
+        let next = is_admissible(&next, self.period_s).then_some(next);
+        next.and_then(|next| self.place(next))
+            .map_or(Step::Nowhere, Step::To)
+    }
+
+    fn is_enough(&self, round: usize, before: &Place, after: &Place) -> bool {
+        let (least, rows) = (after.least, after.normal.rows as f64);
+        let gained = before.least - least;
+        if gained <= self.enough * least / rows || least <= ROUNDING * self.power {
+            return true;
+        }
+        // Against what the step brought.
+        let brought = rows * gained / least;
+        let missing = self.missing(before) - brought;
+        let is_slow = |share: f64| missing > CRITERION_MARGIN && brought < share * missing;
+        (round >= 4 && is_slow(0.05)) || (round >= 7 && is_slow(0.2))
+    }
 }
 
 impl Task<'_> {
-    fn descend(&self, start: &TransferFunction, effort: Effort) -> Option<Descent> {
-        let mut transfer = start.clone();
-        let mut normal = (self.gather)(&transfer)?;
-        let count = parameters(&transfer, self.delay_is_free).len();
-        let mut least = rest(&normal, count)?.rest;
-        let mut damping = self.damping;
-        let mut steps = 0;
-        for round in 0..LONGER * effort.steps {
-            // What is missing, in units of the criterion: what is near is worth more.
-            let missing = criterion(least, self.power, normal.rows, count, self.samples)
-                + self.charge(&transfer)
-                - effort.to_beat;
-            if round >= effort.steps && (missing > CRITERION_MARGIN || effort.to_beat == f64::MAX) {
-                break;
-            }
-            steps = round + 1;
-            let Some(step) = normal.solve_from(0, damping) else {
-                damping *= 10.0;
-                if damping > 1e6 {
-                    return None;
-                }
-                continue;
-            };
-            // What the step promises, taken as straight: without hope there is no
-            // need to look.
-            if (1..4).contains(&round) && missing > GIVE_UP_RATIO * CRITERION_MARGIN {
-                let promised = libm::log(least / step.rest.max(ROUNDING * self.power));
-                if normal.rows as f64 * promised < 0.2 * missing {
-                    break;
-                }
-            }
-            let next = moved(&transfer, self.delay_is_free, step.x.as_slice());
-            let tried = Some(&next)
-                .filter(|next| is_admissible(next, self.period_s))
-                .and_then(|next| (self.gather)(next))
-                .and_then(|normal| Some((rest(&normal, count)?.rest, normal)));
-            match tried {
-                Some((sum, found)) if sum <= least => {
-                    let gained = least - sum;
-                    transfer = next;
-                    normal = found;
-                    least = sum;
-                    damping = (damping * 0.1).max(1e-12);
-                    if gained <= self.enough * least / normal.rows as f64
-                        || least <= ROUNDING * self.power
-                    {
-                        break;
-                    }
-                    // Against what the step brought.
-                    let brought = normal.rows as f64 * gained / least;
-                    let missing = missing - brought;
-                    let is_slow =
-                        |share: f64| missing > CRITERION_MARGIN && brought < share * missing;
-                    if (round >= 4 && is_slow(0.05)) || (round >= 7 && is_slow(0.2)) {
-                        break;
-                    }
-                }
-                _ => {
-                    damping *= 10.0;
-                    if damping > 1e6 {
-                        break;
-                    }
-                }
-            }
-        }
-        Some(Descent {
+    fn place(&self, transfer: TransferFunction) -> Option<Place> {
+        let normal = (self.gather)(&transfer)?;
+        let least = rest(&normal, self.count(&transfer))?.rest;
+        Some(Place {
             transfer,
             normal,
-            steps,
+            least,
         })
+    }
+
+    fn count(&self, transfer: &TransferFunction) -> usize {
+        parameters(transfer, self.delay_is_free).len()
+    }
+
+    /// How far a place is from the criterion that is to be beaten.
+    fn missing(&self, at: &Place) -> f64 {
+        let (rows, count) = (at.normal.rows, self.count(&at.transfer));
+        criterion(at.least, self.power, rows, count, self.samples) + self.charge(&at.transfer)
+            - self.effort.to_beat
     }
 
     fn charge(&self, transfer: &TransferFunction) -> f64 {
@@ -365,7 +372,7 @@ impl Task<'_> {
         normal: &Normal,
         steps: usize,
     ) -> Option<Estimate> {
-        let count = parameters(&transfer, self.delay_is_free).len();
+        let count = self.count(&transfer);
         let left = rest(normal, count)?;
         let solution = solved(normal)?;
         let unknowns = count + left.x.len();

@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{Complex, DMatrix};
 
+use super::descent::{Damping, Descending, Step, descend};
 use super::discrete::{LANES, Lanes, SampledResponse};
 use super::mode::with_mode;
 use super::normal::Normal;
@@ -30,6 +31,14 @@ const COMPARED: usize = 4_000;
 const STRETCH: usize = 32;
 /// Up to this share of the sampling frequency the response is used.
 const BAND: f64 = 0.47;
+
+const DAMPING: Damping = Damping {
+    now: 1e-3,
+    least: 1e-12,
+    most: 1e6,
+};
+/// An improvement below this share of one row's squares ends the search.
+const ENOUGH: f64 = 1e-4;
 
 /// A model with its misfit.
 #[derive(Debug, Clone)]
@@ -199,38 +208,14 @@ impl Points {
     }
 
     fn refine(&self, start: &TransferFunction, steps: usize, period_s: f64) -> Option<ResponseFit> {
-        let mut transfer = start.clone();
         let points = self.earlier(libm::round(start.delay_s / period_s) as i32);
-        let mut normal = points.gather(&transfer, period_s)?;
-        let mut damping = 1e-3;
-        for _ in 0..steps {
-            let moved = normal.solve_from(0, damping).map(|step| {
-                let mut theta = parameters(&transfer, false);
-                for (value, step) in theta.iter_mut().zip(step.x.iter()) {
-                    *value += step;
-                }
-                with(&transfer, &theta)
-            });
-            let tried = moved
-                .filter(|next| is_admissible(next, period_s))
-                .and_then(|next| Some((points.gather(&next, period_s)?, next)));
-            match tried {
-                Some((found, next)) if found.total <= normal.total => {
-                    let gained = normal.total - found.total;
-                    (normal, transfer) = (found, next);
-                    damping = (damping * 0.1).max(1e-12);
-                    if gained < 1e-4 * normal.total / normal.rows as f64 {
-                        break;
-                    }
-                }
-                _ => {
-                    damping *= 10.0;
-                    if damping > 1e6 {
-                        break;
-                    }
-                }
-            }
-        }
+        let first = (points.gather(start, period_s)?, start.clone());
+        let task = Task {
+            points: &points,
+            steps,
+            period_s,
+        };
+        let ((normal, transfer), _) = descend(&task, first, DAMPING)?;
         let count = parameters(&transfer, false).len();
         let solution = normal.solve().or_else(|| normal.solve_from(0, 1e-10))?;
         let noise = points.doubt * normal.total / normal.rows.saturating_sub(count).max(1) as f64;
@@ -241,6 +226,43 @@ impl Points {
             rows: normal.rows,
             count,
         })
+    }
+}
+
+/// A fit of a model to points.
+struct Task<'a> {
+    points: &'a Points,
+    steps: usize,
+    period_s: f64,
+}
+
+impl Descending for Task<'_> {
+    type Place = (Normal, TransferFunction);
+
+    fn squares(&self, (normal, _): &Self::Place) -> f64 {
+        normal.total
+    }
+
+    fn goes_on(&self, round: usize, _: &Self::Place) -> bool {
+        round < self.steps
+    }
+
+    fn step(&self, _: usize, (normal, transfer): &Self::Place, damping: f64) -> Step<Self::Place> {
+        let moved = normal.solve_from(0, damping).map(|step| {
+            let mut theta = parameters(transfer, false);
+            for (value, step) in theta.iter_mut().zip(step.x.iter()) {
+                *value += step;
+            }
+            with(transfer, &theta)
+        });
+        moved
+            .filter(|next| is_admissible(next, self.period_s))
+            .and_then(|next| Some((self.points.gather(&next, self.period_s)?, next)))
+            .map_or(Step::Nowhere, Step::To)
+    }
+
+    fn is_enough(&self, _: usize, (before, _): &Self::Place, (after, _): &Self::Place) -> bool {
+        before.total - after.total < ENOUGH * after.total / after.rows as f64
     }
 }
 
