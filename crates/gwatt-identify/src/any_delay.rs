@@ -1,10 +1,7 @@
 //! Delays between the steps that a search tries.
 
+use super::certainty;
 use super::output_error::{Effort, Estimate, Fitting};
-
-/// By how much a delay between samples has to be better than one of whole
-/// periods.
-const CLEAR_DELAY: f64 = 10.0;
 
 /// The delay set free, if that is clearly worth a parameter: next to a fast zero
 /// and a fast pole it makes all of them uncertain.
@@ -18,7 +15,7 @@ pub fn any_delay(fitting: &Fitting<'_>, t: f64, best: Estimate) -> Timed {
             continue;
         }
         if let Some(found) = fitting.refine(&start, true, Effort::FULL) {
-            if found.criterion() < best.criterion() - CLEAR_DELAY {
+            if found.criterion() < best.criterion() - certainty::PART_OF_PERIOD {
                 return Timed::free(found);
             }
             let apart = found.transfer.delay_s - best.transfer.delay_s;
@@ -86,7 +83,7 @@ pub fn timed(fitting: &Fitting<'_>, t: f64, found: Estimate) -> Timed {
     let is_clear = |free: &Estimate| {
         whole
             .as_ref()
-            .is_none_or(|whole| free.criterion() < whole.criterion() - CLEAR_DELAY)
+            .is_none_or(|whole| free.criterion() < whole.criterion() - certainty::PART_OF_PERIOD)
     };
     match (free.filter(is_clear), whole) {
         (Some(found), _) => Timed::free(found),

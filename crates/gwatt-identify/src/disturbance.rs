@@ -6,6 +6,7 @@
 //! autoregressive filter makes the rest white.
 
 use super::candidate_models::Given;
+use super::certainty;
 use super::chosen::{COARSE, LAGS};
 use super::data::Data;
 use super::leaky_integrator::Leaky;
@@ -27,8 +28,6 @@ const LASTS: f64 = 2.0;
 const LEAST: f64 = 2e-5;
 /// Noise of a smaller share of a position has too few digits in it.
 const DIGITS: f64 = 2e-12;
-/// Noise that is better by less is the same.
-const CLEAR: f64 = 20.0;
 /// Leak of the integrators at first, as a share of the band.
 const SLOW: f64 = 0.25;
 /// Taps before any model was searched for: what is missing must not pass for noise.
@@ -107,7 +106,7 @@ impl Noise {
                 both.min_by(|a, b| a.0.total_cmp(&b.0))
             }
         };
-        let is_clear = |least: f64| now.is_none_or(|now| least < now - CLEAR);
+        let is_clear = |least: f64| now.is_none_or(|now| least < now - certainty::OTHER_NOISE);
         let found = found.filter(|(least, _)| is_clear(*least));
         found.map(|(_, noise)| noise)
     }

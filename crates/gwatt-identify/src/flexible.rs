@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::arx;
 use super::candidate_models::FAST;
+use super::certainty;
 use super::chosen::{LAGS, filtered};
 use super::data::Data;
 use super::disturbance::as_it_is;
@@ -272,9 +273,6 @@ fn keep_ringing(roots: &mut [Vec<Root>], period_s: f64) {
     }
 }
 
-/// A gain with a larger standard error, as a share, may have the other sign.
-const SURE_SIGN: f64 = 1.0 / 3.0;
-
 /// What figures are off by at most counts as so many standard errors.
 const AT_MOST: f64 = 2.0;
 
@@ -350,7 +348,7 @@ fn describe(
             "check that input and motion are of the same axis and the same time",
         ));
     }
-    let is_unsure = |std: f64| !std.is_nan() && std > SURE_SIGN * gain.abs();
+    let is_unsure = |std: f64| !std.is_nan() && std > certainty::SIGN_SHARE * gain.abs();
     let sign_is_sure = !estimate.std(0).is_some_and(is_unsure);
     let bands = shown_up_to(data, &found.response);
     let mut roots = roots_of(&transfer, bands, std);

@@ -6,6 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::certainty;
 use super::equations::{Band, Equations};
 use super::normal::Normal;
 use super::sandwich::{sandwich, widening};
@@ -38,8 +39,6 @@ pub(super) enum Terms {
 
 /// Parts of the recordings of which each is predicted by the others.
 const PARTS: usize = 8;
-/// Standard errors from which on directions differ.
-const CLEAR: f64 = 3.0;
 /// By which share the errors of prediction fall at least.
 const BETTER: f64 = 0.02;
 /// Motion is one way where the other has fewer equations, or a smaller share.
@@ -334,7 +333,7 @@ fn by_data(all: &[Equations]) -> Option<Solved> {
             (Some(one), Some(two)) if two < (1.0 - BETTER) * one
         )
     };
-    if difference.abs() > CLEAR * std && is_better() {
+    if difference.abs() > certainty::DIRECTIONS * std && is_better() {
         Some(directional)
     } else {
         Some(symmetric)

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::certainty;
 use super::effects::{Effect, Saturation};
 use super::figure::Figure;
 use super::flexible::{Flexible, Root};
@@ -135,8 +136,6 @@ const MOSTLY_MISSED: f64 = 0.04;
 const NOISY: f64 = 2.0;
 /// What may be left where what is left comes and goes.
 const UNSTEADY: f64 = 0.3;
-/// Standard errors from which on a sign is sure.
-const SURE: f64 = 3.0;
 
 fn excess(figure: Figure, limit: f64) -> f64 {
     let share = figure.std / figure.value.abs().max(f64::MIN_POSITIVE) / limit;
@@ -155,7 +154,7 @@ fn longer(times: f64) -> Judgement {
 
 /// Whether a figure is below zero for sure; one without an error, by more than nothing.
 fn is_negative(figure: Figure) -> bool {
-    let is_sure = figure.std.is_nan() || figure.value.abs() > SURE * figure.std;
+    let is_sure = figure.std.is_nan() || figure.value.abs() > certainty::SIGN * figure.std;
     figure.value < 0.0 && is_sure
 }
 

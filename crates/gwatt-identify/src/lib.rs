@@ -25,6 +25,7 @@ pub mod tune;
 mod agreement;
 mod any_delay;
 mod arx;
+mod certainty;
 mod charge;
 mod choice;
 mod column;

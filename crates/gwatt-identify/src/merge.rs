@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
+use super::certainty;
 use super::error::{IdentifyError, Outcome};
 use super::figure::Figure;
 use super::parts;
@@ -251,21 +252,18 @@ fn number_of(item: &Item) -> Option<f64> {
     item.as_float().or_else(whole)
 }
 
-/// Standard errors from which on an offset is a weight.
-const CLEAR: f64 = 3.0;
-
 impl AxisFigures {
     /// Whether the weight stands clear of its error.
     #[must_use]
     pub fn has_weight(&self) -> bool {
         self.gravity
-            .is_some_and(|weight| weight.value.abs() > CLEAR * weight.std)
+            .is_some_and(|weight| weight.value.abs() > certainty::WEIGHT * weight.std)
     }
 }
 
 fn gravity(table: &mut dyn TableLike, key: &str, weight: Option<Figure>, factor: f64) {
     if let Some(weight) = weight
-        && (table.contains_key(key) || weight.value.abs() > CLEAR * weight.std)
+        && (table.contains_key(key) || weight.value.abs() > certainty::WEIGHT * weight.std)
     {
         set(table, key, weight.value * factor);
     }

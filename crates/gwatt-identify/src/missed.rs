@@ -7,14 +7,11 @@
 //! the square of how many standard errors figures can be off by it (Cauchy and Schwarz), if
 //! what shows of it in the residual is as large as what went into the figures.
 
+use super::certainty;
 use super::chosen::LAGS;
 use super::noise::{Whiteness, autocorrelation};
 use super::spectrum::coherent;
 
-/// Once in so many recordings a model that misses nothing is widened by chance.
-const SELDOM: f64 = 1e-4;
-/// The same as standard deviations of the sum over all frequencies.
-const SURE: f64 = 4.0;
 /// Frequencies with less of the input's power, by its highest, are those of its windows: what
 /// they seem to explain is one and the same.
 const NOTHING: f64 = 1e-6;
@@ -56,7 +53,7 @@ pub fn missed_energy(by: &[f64], white: &[f64], period_s: f64) -> f64 {
         return 0.0;
     }
     // What chance exceeds at one of all frequencies once in so many recordings.
-    let highest = 1.0 - libm::pow(SELDOM / bins, 1.0 / (k - 1.0));
+    let highest = 1.0 - libm::pow(certainty::MISSED_SELDOM / bins, 1.0 / (k - 1.0));
     let (mut sum, mut all, mut power, mut peaks) = (0.0, 0.0, 0.0, 0.0);
     let all_bins = found.coherence.iter().zip(&found.power);
     for ((coherence, each), by) in all_bins.zip(&found.by_power) {
@@ -72,7 +69,7 @@ pub fn missed_energy(by: &[f64], white: &[f64], period_s: f64) -> f64 {
         }
     }
     // Windows make neighbours alike: two frequencies count as one.
-    let is_sure = sum > SURE * chance * (2.0 * bins).sqrt();
+    let is_sure = sum > certainty::MISSED_ENERGY * chance * (2.0 * bins).sqrt();
     let explained = if is_sure { all.max(peaks) } else { peaks };
     if power > 0.0 {
         white.len() as f64 * explained / power

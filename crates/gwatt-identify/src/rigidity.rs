@@ -5,14 +5,14 @@
 //! their ratio is compared with the mass. What has nothing to do with the acceleration at
 //! all, such as the force of another axis, is neither.
 
+use super::certainty;
 use super::spectrum::{explained_share, measure};
 
-/// Where the model misses more than this share of a frequency's force, and so many
-/// standard errors of it, the axis is not rigid. What is not coherent, noise in the
+/// Where the model misses more than this share of a frequency's force, and
+/// [`certainty::NOT_RIGID`] standard errors of it, the axis is not rigid. What is not coherent, noise in the
 /// force or in the acceleration, makes their ratio another one by as much at most; it
 /// is taken twice.
 const MISSED: f64 = 0.1;
-const SURE: f64 = 4.0;
 /// In so many neighbouring frequencies.
 const RUN: usize = 3;
 /// Which share of the force follows from the acceleration of an axis that resonates, as any
@@ -45,7 +45,7 @@ pub fn resonates(
         .map(|(((by_force, variance), coherence), _)| {
             let missed = (by_force * mass - 1.0).norm();
             missed > MISSED + 2.0 * (1.0 - coherence)
-                && missed > SURE * mass.abs() * variance.sqrt()
+                && missed > certainty::NOT_RIGID * mass.abs() * variance.sqrt()
         })
         .collect();
     missed

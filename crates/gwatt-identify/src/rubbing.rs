@@ -7,6 +7,7 @@
 //! that is estimated next to the model. Whether there is any shows where motion is slow
 //! and the axis as good as rigid.
 
+use super::certainty;
 use super::column::Quantity;
 use super::equations::Equations;
 use super::figure::Figure;
@@ -18,13 +19,7 @@ use super::recording::Recording;
 const SLOW_HZ: f64 = 5.0;
 /// Speeds are smoothed up to this share of the sampling rate.
 const SMOOTH: f64 = 0.1;
-/// Standard errors from which on there is friction, and from which on a term of it is
-/// kept.
-const FOUND: f64 = 4.0;
-const KEPT: f64 = 3.0;
 
-/// The same of what is found next to a model.
-const CLEAR: f64 = 3.0;
 /// Friction of a speed that is a sum of accelerations, as a share: what instants of sticking
 /// made of it in simulations.
 const SUMMED_VISCOUS: f64 = 0.04;
@@ -125,12 +120,15 @@ impl Rubbing {
         if solved.terms == Terms::Symmetric {
             found.push((Term::Coulomb, figure(2)));
         }
-        if found.iter().all(|(_, (_, sure))| *sure < FOUND) {
+        if found
+            .iter()
+            .all(|(_, (_, sure))| *sure < certainty::FRICTION)
+        {
             return None;
         }
         let mut out = Self::default();
         for (term, (value, sure)) in found {
-            if sure > KEPT {
+            if sure > certainty::FRICTION_TERM {
                 out.add(term, &speed, value);
             }
         }
@@ -184,7 +182,7 @@ impl Rubbing {
     pub(super) fn is_clear(&self, found: &[Figure]) -> bool {
         let figures = self.figures(found);
         let mut figures = figures.iter().flatten();
-        figures.any(|figure| figure.value > CLEAR * figure.std)
+        figures.any(|figure| figure.value > certainty::FRICTION_OF_MODEL * figure.std)
     }
 
     /// This much friction in another recording.

@@ -2,14 +2,13 @@
 //! better, until there is none.
 
 use super::candidate_models::{Given, are_alike, neighbours, restarts};
+use super::certainty;
 use super::output_error::{Effort, Estimate, Fitting};
 use super::spectrum::FrequencyResponse;
 use super::transfer::{Factor, TransferFunction};
 
 /// Models of different kinds that are gone on with.
 const KEPT: usize = 5;
-/// A model better by this much is gone on from without looking at others.
-const CLEAR: f64 = 4.0;
 /// A model better by less is the same one.
 const WORTH: f64 = 0.5;
 /// Steps of each fit on the way.
@@ -165,7 +164,7 @@ impl Ladder<'_> {
                 if let Some(found) = found {
                     all.push(found.clone());
                     if is_better(&found, top.as_ref()) {
-                        let is_clear = found.criterion() < best.criterion() - CLEAR;
+                        let is_clear = found.criterion() < best.criterion() - certainty::MODEL;
                         top = Some(found);
                         if is_clear {
                             break;

@@ -4,6 +4,7 @@ use super::super::equations::{Equations, sign};
 use super::super::friction::{Friction, Solved, solve_best};
 use super::effect::Saturation;
 use super::search::{left_share, share};
+use crate::certainty;
 
 /// Limits that are tried, as shares of the samples below them.
 const BELOW: [f64; 14] = [
@@ -16,9 +17,8 @@ const ROUNDS: usize = 5;
 /// What accelerates the axis is so many times as large as what is left, at least: a force that
 /// is cut off near friction is explained by friction alone, whatever it was.
 const ACCELERATES: f64 = 2.0;
-/// What is missing at the limit is so many standard errors, and such a share of the limit, at
-/// least: then the motion shows more than was recorded.
-const SURE: f64 = 4.0;
+/// What is missing at the limit is such a share of it at least, where the motion shows more
+/// than was recorded.
 const MISSING: f64 = 0.03;
 
 /// The force with all that is above a limit cut off.
@@ -78,7 +78,7 @@ fn shows_more(all: &[Equations], asked: Option<Friction>) -> bool {
     let last = solved.theta.len() - 1;
     let missing = -solved.theta.last().copied().unwrap_or_default();
     let std = solved.covariance[(last, last)].max(0.0).sqrt();
-    missing > SURE * std && missing > MISSING * limit
+    missing > certainty::LIMIT * std && missing > MISSING * limit
 }
 
 fn ends(x: &[f64]) -> (f64, f64) {

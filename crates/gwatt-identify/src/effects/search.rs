@@ -12,6 +12,7 @@ use super::effect::Effect;
 use super::play::Play;
 use super::settled::{Settled, in_band, settled, unknowns, with};
 use super::shape::Shape;
+use crate::certainty;
 
 /// Nothing is looked for where a model leaves less of the force than this.
 const LEFT: f64 = 0.02;
@@ -19,8 +20,6 @@ const LEFT: f64 = 0.02;
 const SHARE: f64 = 0.02;
 /// By which share what is left of predictions falls at least.
 const BETTER: f64 = 0.1;
-/// Standard errors from which on the size of an effect is sure.
-const SURE: f64 = 5.0;
 /// Effects at most.
 const EFFECTS: usize = 6;
 /// Stretches of each part that is predicted by the others.
@@ -245,7 +244,7 @@ fn next(
 
 /// Whether all effects have the signs that they must have, for sure.
 fn is_plain(settled: &Settled) -> bool {
-    let is_sure = |figure: &Figure| figure.value > SURE * figure.std;
+    let is_sure = |figure: &Figure| figure.value > certainty::EFFECT * figure.std;
     let solved = &settled.solved;
     let mass = solved.theta.first().copied().unwrap_or_default();
     let coulomb = solved.terms.friction_in(&solved.theta);

@@ -6,13 +6,11 @@
 //! Δτ alone makes an ellipse, `v·Δτ` out of round.
 
 use super::axis::AxisResponse;
+use crate::certainty;
 use crate::transfer::Factor;
 
 /// Delays that differ by less are the same: at 3 m/min they make 1 µm.
 pub const DELAY_TOLERANCE_S: f64 = 2e-5;
-
-/// So many standard errors are clear.
-const CLEAR: f64 = 2.0;
 
 /// The delay of an axis, and what makes it that of the slowest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +53,8 @@ pub fn advice(axes: &[AxisResponse]) -> Option<Vec<Advice>> {
             0.0
         }
     };
-    let is_known = |axis: &AxisResponse, delay: f64| std(axis) * CLEAR <= delay.abs();
+    let is_known =
+        |axis: &AxisResponse, delay: f64| std(axis) * certainty::DELAY_ADVICE <= delay.abs();
     let each = || axes.iter().zip(&delays);
     let (slowest, slowest_std) = each()
         .filter(|(axis, delay)| is_known(axis, **delay))
@@ -68,7 +67,7 @@ pub fn advice(axes: &[AxisResponse]) -> Option<Vec<Advice>> {
         let apart_s = slowest - delay_s;
         let is_earlier = is_known(axis, delay_s)
             && apart_s > DELAY_TOLERANCE_S
-            && apart_s > CLEAR * libm::hypot(std(axis), slowest_std);
+            && apart_s > certainty::DELAY_ADVICE * libm::hypot(std(axis), slowest_std);
         let command_delay_s = if is_earlier { apart_s } else { 0.0 };
         Advice {
             delay_s,

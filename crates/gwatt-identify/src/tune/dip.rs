@@ -1,5 +1,6 @@
 //! Dips of a measured frequency response: where an axis has an anti-resonance.
 
+use crate::certainty;
 use crate::spectrum::FrequencyResponse;
 
 /// A minimum of the smoothed gain.
@@ -15,9 +16,6 @@ pub struct Dip {
 
 /// Shallower minima are ripple.
 const DEPTH_DB: f64 = 3.0;
-/// A shoulder counts where it stands so many standard deviations out of the
-/// noise.
-const CLEAR: f64 = 3.0;
 /// Half the width of the moving average: this share of the frequency, and at
 /// least one sample.
 const WIDTH: f64 = 0.01;
@@ -67,7 +65,7 @@ pub fn dips(response: &FrequencyResponse) -> Vec<Dip> {
 fn shoulder<'a>(points: impl Iterator<Item = (&'a f64, &'a f64)>, least: f64) -> f64 {
     points
         .take_while(|(gain, _)| **gain >= least)
-        .filter(|(gain, noise)| **gain > CLEAR * **noise)
+        .filter(|(gain, noise)| **gain > certainty::SHOULDER * **noise)
         .map(|(gain, _)| *gain)
         .fold(0.0, f64::max)
 }
