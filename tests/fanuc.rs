@@ -350,3 +350,26 @@ fn nothing_is_written_in_another_way_without_points() {
     assert_eq!(code, 0, "{errors}");
     assert!(text.contains("X200"), "{text}");
 }
+
+/// Where the offset moves the axis, a length by itself moves it.
+#[test]
+fn lengths_without_a_place() {
+    let noted = |program: &str| {
+        let notes = notes(
+            "fanuc",
+            &format!("G21 G90 G54\nG0 X0. Y0.\n{program}\nM30\n"),
+        );
+        notes.contains(&"length-alone")
+    };
+    for alone in ["G43 H1", "G91 G43 Z5. H1", "G43 Z50. H1\nG49", "G43 X5. H1"] {
+        assert!(noted(alone), "{alone}");
+    }
+    for placed in [
+        "G43 Z50. H1",
+        "G43 G90 Z5. H1",
+        "G40 G49 G80",
+        "G43 Z50. H1\nG91 G28 Z0. G49",
+    ] {
+        assert!(!noted(placed), "{placed}");
+    }
+}

@@ -213,7 +213,7 @@ fn what_stays() {
         assert!(errors.contains(reason), "{program}{errors}");
     }
     // It shows the F in force, which would be another one's.
-    let program = format!("{begin}G41 D1 G1 X40 Y0 F30000\n#1=#4109\nG40 X0 F500\nM30\n");
+    let program = format!("{begin}G41 D1 G1 X40 Y0 F30000\n#1=#4109\nY300 F500\nG40 X0\nM30\n");
     let (code, _, errors) = run(&shop("fanuc", 250.0), &program, "");
     assert_eq!(code, 1, "{errors}");
 }

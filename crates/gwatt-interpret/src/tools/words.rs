@@ -1,6 +1,7 @@
 //! Words that choose, change and measure tools.
 
 use super::{LENGTH_AXIS, OFFSETS_OF_T, ToolLength};
+use crate::code::GCode;
 use crate::control::{Control, Run};
 use crate::rules::ToolLengths;
 use crate::tool_table::Tool;
@@ -90,6 +91,7 @@ impl Control<'_> {
             self.tools.guessed = (form != ToolLength::Off).then_some(number as u32);
             return;
         }
+        self.note_length_alone(form, span, run);
         let offset = match form {
             ToolLength::Off => Some([0.0; AXES]),
             ToolLength::Given => self.given_length(span, run),
@@ -114,6 +116,28 @@ impl Control<'_> {
         if let Some(offset) = offset {
             self.position.change(|offsets| offsets.tool = offset);
         }
+    }
+
+    /// Says that a length which changes without a place of its axis may move it: by the
+    /// length, where the offset moves axes and does not shift coordinates (Fanuc B-63944EN, "Tool
+    /// Length Offset", parameter 5006 bit TOS).
+    fn note_length_alone(&self, form: ToolLength, span: Span, run: &mut Run<'_, '_>) {
+        let moves = GCode::Reference.group() | GCode::MachineCoordinates.group();
+        let changes = form != ToolLength::Off || self.tools.length.is_some();
+        let said = run.words.g.iter().find_map(|(code, ..)| match code {
+            GCode::Absolute(absolute) => Some(*absolute),
+            _ => None,
+        });
+        let absolute = said.unwrap_or(self.modal.absolute);
+        let placed = run.words.has(ALL_AXES[LENGTH_AXIS].letter()) && absolute;
+        let elsewhere = self.rules.tool_lengths != ToolLengths::Offsets;
+        if elsewhere || !changes || placed || run.words.groups & moves != 0 {
+            return;
+        }
+        let message = "where the offset moves the axis (Fanuc: parameter 5006 bit TOS = 0), a tool \
+                       length without an absolute place of its axis moves it by the length: that is \
+                       not counted; write the place with it, as in G90 G43 Z50. H1";
+        run.report.note_once("length-alone", message, span);
     }
 
     /// H in a block of its own while G43 is in force (Fanuc).
