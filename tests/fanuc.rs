@@ -77,6 +77,38 @@ fn notes(controller: &str, program: &str) -> Vec<&'static str> {
     .collect()
 }
 
+/// B-64304EN, "Preparatory Function": of several G codes of one group in a block the last is
+/// valid. G28 goes over a place here, not over an increment.
+#[test]
+fn the_last_g_word_of_a_group_counts() {
+    let found = moves("fanuc", "G90 G21 G0 X0 Y0 Z50.\nG91 G28 Z60. G90\nG0 X5.\n");
+    let twin = moves("fanuc", "G90 G21 G0 X0 Y0 Z50.\nG90 G28 Z60.\nG0 X5.\n");
+    assert_eq!(found, twin);
+    let found = moves(
+        "fanuc",
+        "G0 G1 G0 X5.\nG54 G55 G20 G21 G17 G19 G17 G40 G41 G40 G94\nX6.\n",
+    );
+    assert_eq!(found, moves("fanuc", "G0 X5.\nG55 G21 G17 G40 G94\nX6.\n"));
+    assert!(notes("fanuc", "G1 G0 X5.\n").contains(&"last-g-counts"));
+    let refused = |program: &str, expected: &str| {
+        assert_eq!(
+            moves("fanuc", program),
+            format!("1 modal-group-twice: {expected}\n"),
+            "{program}"
+        );
+    };
+    let plain = "two G words of one modal group in a block";
+    refused("G0 G81 X5. Z-5. R2. F100.\n", plain);
+    refused("G28 G52 X5.\n", plain);
+    refused(
+        "G90 X5. G91 Y5.\n",
+        "two G words of one modal group, with words before and after the last of them",
+    );
+    assert_eq!(
+        moves("haas", "G0 G1 X5.\n"),
+        format!("1 modal-group-twice: {plain}\n")
+    );
+}
 /// B-63944EN, "Decimal Point Programming".
 #[test]
 fn numbers_without_a_point() {

@@ -131,6 +131,45 @@ fn modal_calls_and_calls_of_blocks() {
     fails("fanuc", "G0 X1.\nG66.1 P9 A3.\nM30\n", message);
 }
 
+/// B-64304EN, "Subprogram Call" (M98 P Q): from a block on, of the own program without P,
+/// K or L times, and back. Mitsubishi, "Subprogram Control": the word is H.
+#[test]
+fn calls_that_begin_at_a_block() {
+    let program = "O1\nG0 X1.\nM98 Q100\nX2.\nM98 Q100 L2\nM30\nN100 G91 X10.\nG90\nM99\n";
+    assert_eq!(ends("fanuc", program), [1.0, 11.0, 2.0, 12.0, 22.0]);
+    let other = "O1\nM98 P2 Q20\nX9.\nM30\nO2\nN20 G0 X1.\nN30 X2.\nM99\nO3\nN20 X77.\nM99\n";
+    assert_eq!(ends("fanuc", &other.replace("Q20", "Q30")), [2.0, 9.0]);
+    assert_eq!(
+        ends("fanuc-lathe-b", &other.replace("Q20", "Q30")),
+        [2.0, 9.0]
+    );
+    let by_h = other.replace("Q20", "H30");
+    assert_eq!(ends("mitsubishi", &by_h), [2.0, 9.0]);
+    // The short form of repeats and number.
+    let short = other.replace("P2 Q20", "P20002 Q30");
+    assert_eq!(ends("fanuc", &short), [2.0, 2.0, 9.0]);
+    let fails = |program: &str, expected: &str| fails("fanuc", program, expected);
+    fails(
+        &other.replace("Q20", "Q40"),
+        "2 no-such-block: there is no block N40 in the program that is called",
+    );
+    fails(
+        &other.replace("N30", "N20"),
+        "2 no-such-block: block N20 is called, which stands in lines 6 and 7 of its program",
+    );
+    fails(
+        &other.replace("Q20", "Q2.5"),
+        "2 subprogram: Q of M98 is not the number of a block",
+    );
+    fails(
+        "O1\nM98 L2\nM30\n",
+        "2 subprogram: a call without the number of a program",
+    );
+    // Haas has M97 for that.
+    let haas = run("haas", "O1\nM98 Q100\nM30\nN100 M99\n", &options(9, 9, 9));
+    assert!(haas.is_err());
+}
+
 #[test]
 fn every_message_of_o_words() {
     let fails = |program: &str, expected: &str| fails("linuxcnc", program, expected);

@@ -5,7 +5,7 @@ use std::cell::Cell;
 
 use super::compensation::Choice;
 use super::control::{Control, Effects, Run};
-use super::facts::Facts;
+use super::facts::{Facts, TWO_OF_A_GROUP};
 use super::fast_path::is_direct;
 use super::knob::KnobState;
 use super::languages::language_of;
@@ -252,6 +252,9 @@ impl Control<'_> {
         run.words
             .fill(run.block, &self.machine.controller, &mut run.report);
         run.facts.checksum = run.words.checksum;
+        if run.words.repeated.is_some() {
+            run.facts.fixed = Some(TWO_OF_A_GROUP);
+        }
         if self.adapts {
             self.adapt_words(run);
         }

@@ -25,6 +25,9 @@ impl ToolWords {
 /// Why a block with M6 keeps its words where nothing says when the tool changes.
 pub const TOOL_CHANGE_UNKNOWN: &str = "it changes the tool, before or after its motion";
 
+/// Why a block with two G words of one modal group keeps its words: it is the last that counts.
+pub const TWO_OF_A_GROUP: &str = "it has two G words of one group";
+
 /// What the rewriter must know of a block besides its moves.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Facts {

@@ -172,6 +172,8 @@ impl Verb {
 pub(crate) struct Call {
     pub(crate) target: Target,
     pub(crate) times: u64,
+    /// The block that it begins at (M98 Q); `None`: at its head.
+    pub(crate) block: Option<u64>,
     /// Values for #1 to #33; `None`: the variables stay those of the caller.
     pub(crate) arguments: Option<Box<[Value; LOCALS]>>,
 }
@@ -186,4 +188,6 @@ pub(crate) enum Target {
     Short(u64),
     /// A block of the same program (M97).
     Block(u64),
+    /// The same program.
+    Here,
 }

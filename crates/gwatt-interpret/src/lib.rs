@@ -94,7 +94,7 @@ pub use code::Motion;
 pub use control::Effects;
 pub use dialect::NO_POINT;
 pub use execute::Interpreter;
-pub use facts::{CalledCycle, Facts, TOOL_CHANGE_UNKNOWN, ToolWords};
+pub use facts::{CalledCycle, Facts, TOOL_CHANGE_UNKNOWN, TWO_OF_A_GROUP, ToolWords};
 pub use fast_path_state::FastPathState;
 pub use flow::{Flow, Limits, Place};
 pub use given::GivenVariable;

@@ -64,8 +64,7 @@ impl Control<'_> {
         match (macros, number) {
             // M198 calls a program that stands in another memory.
             (Macros::OWords | Macros::MacroB, 980) | (Macros::MacroB, 970 | 1980) => {
-                let local = number == 970;
-                if let Some(call) = self.call(local, span, run) {
+                if let Some(call) = self.call(number, span, run) {
                     self.transfer = Some(Transfer::Call(call));
                 }
             }
@@ -83,14 +82,25 @@ impl Control<'_> {
         true
     }
 
-    /// The call of M97 and M98.
-    fn call(&mut self, local: bool, span: Span, run: &mut Run<'_, '_>) -> Option<Call> {
+    /// The call of M97, M98 and M198.
+    fn call(&mut self, number: u16, span: Span, run: &mut Run<'_, '_>) -> Option<Call> {
+        let local = number == 970;
         let program = run.words.take(b'P');
         let times = run.words.take(b'L');
         if let Some(name) = self.callee.take() {
             return Some(Call {
                 target: Target::Program(Label::Name(name)),
                 times: repetitions(times, span, run)?,
+                block: self.begins_at(number, true, span, run)?,
+                arguments: None,
+            });
+        }
+        let block = self.begins_at(number, program.is_some(), span, run)?;
+        if block.is_some() && program.is_none() {
+            return Some(Call {
+                target: Target::Here,
+                times: repetitions(times, span, run)?,
+                block,
                 arguments: None,
             });
         }
@@ -105,6 +115,7 @@ impl Control<'_> {
             return Some(Call {
                 target: Target::Short(program),
                 times: 1,
+                block,
                 arguments: None,
             });
         }
@@ -116,8 +127,39 @@ impl Control<'_> {
         Some(Call {
             target,
             times: repetitions(repeat, span, run)?,
+            block,
             arguments: None,
         })
+    }
+
+    /// The block that M98 begins at, where a word names one; `None` when it was reported.
+    fn begins_at(
+        &self,
+        number: u16,
+        program: bool,
+        span: Span,
+        run: &mut Run<'_, '_>,
+    ) -> Option<Option<u64>> {
+        let letter = self.machine.controller.language.dialect.call_block;
+        let Some(letter) = letter.filter(|_| number == 980) else {
+            return Some(None);
+        };
+        let Some(value) = run.words.take(letter) else {
+            return Some(None);
+        };
+        let name = char::from(letter);
+        let Some(block) = whole(value) else {
+            let message = format!("{name} of M98 is not the number of a block");
+            let help = format!("write the number after N of that block, as in M98 {name}100");
+            run.report.error("subprogram", message, span).help(help);
+            return None;
+        };
+        if program && letter == b'Q' {
+            let message = "M98 begins at the block that Q names; on a Fanuc parameter 6005#0 \
+                           (SQC) has to be 1 for that";
+            run.report.note_once("call-from-block", message, span);
+        }
+        Some(Some(block))
     }
 
     /// G65, G66 and G67: takes the whole block.
@@ -196,6 +238,7 @@ impl Control<'_> {
             Transfer::ModalCall(Some(call))
         });
         true
+            block: None,
     }
 }
 

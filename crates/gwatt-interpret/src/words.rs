@@ -38,6 +38,9 @@ pub(super) struct Words {
     pub(super) incremental: u32,
     /// The block carries a checksum.
     pub(super) checksum: bool,
+    /// Two G words of one modal group of which the last counts: where the first ends, and
+    /// where the last begins.
+    pub(super) repeated: Option<[u32; 2]>,
 }
 
 impl Words {
@@ -53,6 +56,7 @@ impl Words {
             groups: 0,
             incremental: 0,
             checksum: false,
+            repeated: None,
         }
     }
 
@@ -66,6 +70,7 @@ impl Words {
         self.present = 0;
         self.groups = 0;
         self.checksum = false;
+        self.repeated = None;
         self.g.clear();
         self.m.clear();
         self.knobs.clear();
@@ -112,6 +117,9 @@ impl Words {
             }
         }
         self.unused = self.present;
+        if let Some(between) = self.repeated {
+            check_order(between, block, report);
+        }
     }
 
     fn add_knob(
@@ -199,6 +207,11 @@ impl Words {
             return;
         };
         if self.groups & code.group() != 0 && !matches!(code, GCode::Ignored | GCode::ExactOnce) {
+            if controller.language.dialect.last_g_counts && self.replace(code, number, word.span) {
+                let message = "of several G words of one group in a block the last counts";
+                report.note_once("last-g-counts", message, word.span);
+                return;
+            }
             report
                 .error(
                     "modal-group-twice",
@@ -216,6 +229,26 @@ impl Words {
                 word.span,
             );
         }
+    }
+
+    /// Takes a G word for the one of its group that came before it, where both only set what
+    /// is in force.
+    fn replace(&mut self, code: GCode, number: u16, span: Span) -> bool {
+        let same = |(old, ..): &(GCode, u16, Span)| old.group() == code.group();
+        let Some(at) = self.g.iter().position(same) else {
+            return false;
+        };
+        let Some(&(old, old_number, old_span)) = self.g.get(at) else {
+            return false;
+        };
+        if !is_plain_modal(old, old_number) || !is_plain_modal(code, number) {
+            return false;
+        }
+        let first = self.repeated.map_or(old_span.end, |[first, _]| first);
+        self.repeated = Some([first, span.start]);
+        self.g.remove(at);
+        self.g.push((code, number, span));
+        true
     }
 
     fn add_m(&mut self, word: Word, report: &mut Report<'_, '_>) {
@@ -324,6 +357,47 @@ impl Words {
     pub(super) fn has_axes(&self) -> bool {
         self.unused & (AXIS_LETTERS | POLAR) != 0
     }
+}
+
+/// Whether a G word only sets what is in force: of several in a block the last may count.
+fn is_plain_modal(code: GCode, number: u16) -> bool {
+    match code {
+        GCode::Motion(motion) => !matches!(motion, Motion::None | Motion::Special(_)),
+        GCode::Plane(_)
+        | GCode::Absolute(_)
+        | GCode::Units { .. }
+        | GCode::FeedMode(_)
+        | GCode::Retract(_)
+        | GCode::WorkOffset(_) => true,
+        GCode::CompensationOff | GCode::CompensationOn { .. } => {
+            matches!(number, 400 | 410 | 420)
+        }
+        GCode::ToolLength(_) => matches!(number, 430 | 440 | 490),
+        _ => false,
+    }
+}
+
+/// Refuses a block whose words of lengths stand on both sides of the last of two G words of a
+/// group: it was hardly written for a control on which the last one holds for all of them.
+#[cold]
+fn check_order([first, last]: [u32; 2], block: &Block, report: &mut Report<'_, '_>) {
+    let lengths =
+        |word: &&Word| matches!(word.letter, b'A'..=b'C' | b'I'..=b'K' | b'R' | b'U'..=b'Z');
+    let mut words = block.words.iter().filter(lengths);
+    let between = words
+        .clone()
+        .any(|word| (first..last).contains(&word.span.start));
+    let Some(after) = words
+        .find(|word| word.span.start > last)
+        .filter(|_| between)
+    else {
+        return;
+    };
+    let message = "two G words of one modal group, with words before and after the last of them";
+    let help = "on this control the last one holds for the whole block: write two blocks";
+    report
+        .error("modal-group-twice", message, after.span)
+        .help(help);
 }
 
 /// Axes and values of the axis words of a block.

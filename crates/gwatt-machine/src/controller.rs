@@ -153,6 +153,10 @@ pub struct Dialect {
     pub g28_all: bool,
 }
 
+    /// The word of M98 that names the block to begin at, such as `Q`.
+    pub call_block: Option<u8>,
+    /// Of several G words of one modal group in a block the last counts.
+    pub last_g_counts: bool,
 impl Language {
     /// Whether G61 puts blocks in exact stop and G64 ends that, on a control that has no word
     /// for one block.

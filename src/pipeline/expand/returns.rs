@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::{Lines, Series};
-use crate::interpret::{Modal, Motion, Step};
+use crate::interpret::{Modal, Motion, Step, TWO_OF_A_GROUP};
 use crate::machine::{AxisKind, AxisSet, Lathe, Machine};
 use crate::pipeline::executor::Line;
 use crate::rewrite::Return;
@@ -48,6 +48,8 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before, machine: &Machine) ->
         Err("it stands in the file of a subprogram")
     } else if line.block.delete_level > 0 || facts.checksum {
         Err("its block may be skipped")
+    } else if facts.fixed == Some(TWO_OF_A_GROUP) {
+        Err(TWO_OF_A_GROUP)
     } else if facts.compensated {
         Err("it runs under cutter compensation")
     } else if let Some(point) = unknown_point {

@@ -10,6 +10,34 @@ impl Flow {
         Ok(())
     }
 
+    /// A block of the program that `at` belongs to, which may have one with this number only:
+    /// which of several is found first is not known.
+    pub(super) fn find_only_block(&mut self, block: u64, at: Place) -> Result<Place, FlowError> {
+        let text = self.texts.get_mut(at.text);
+        let found = text.and_then(|text| {
+            let line = text.find(&Search::FirstBlock(block), at.line)?;
+            let again = text.find(&Search::NextBlock(block), line);
+            Some((line, again))
+        });
+        match found {
+            Some((line, None)) => Ok(Place { line, ..at }),
+            Some((line, Some(again))) => {
+                let message = format!(
+                    "block N{block} is called, which stands in lines {} and {} of its program",
+                    line + 1,
+                    again + 1
+                );
+                let help = "number one of them otherwise";
+                Err(FlowError::new("no-such-block", message, help))
+            }
+            None => {
+                let message = format!("there is no block N{block} in the program that is called");
+                let help = "write the number of a block that exists";
+                Err(FlowError::new("no-such-block", message, help))
+            }
+        }
+    }
+
     pub(super) fn begin_loop(&mut self, number: u8, holds: bool) -> Result<(), FlowError> {
         if holds {
             return Ok(());

@@ -296,6 +296,11 @@ impl Flow {
                 }
             }
             Target::Block(block) => self.find_block(*block, self.next)?,
+            Target::Here => self.now,
+        };
+        let begin = match call.block {
+            Some(block) => self.find_only_block(block, begin)?,
+            None => begin,
         };
         if interpreter.rs274() && self.is_sub(begin) {
             let message = "M98 calls a subroutine that begins with `sub`";

@@ -48,6 +48,9 @@ pub(super) enum Search {
     OWord(Label, &'static [Keyword]),
     /// A block number.
     Block(u64),
+    /// The same from the beginning of the program, and from after this line.
+    FirstBlock(u64),
+    NextBlock(u64),
     /// `END n`, forwards.
     EndLoop(u8),
     /// `DO n`, backwards.
@@ -240,6 +243,14 @@ impl Text {
                 (from..end)
                     .chain(begin..from)
                     .find(|line| block_number(self.line(*line)) == Some(*number))
+            }
+            Search::FirstBlock(number) => {
+                let (begin, end) = self.program(from);
+                (begin..end).find(|line| block_number(self.line(*line)) == Some(*number))
+            }
+            Search::NextBlock(number) => {
+                let (_, end) = self.program(from);
+                (from + 1..end).find(|line| block_number(self.line(*line)) == Some(*number))
             }
             Search::EndLoop(number) => {
                 let (_, end) = self.program(from);

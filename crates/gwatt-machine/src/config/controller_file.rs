@@ -127,6 +127,19 @@ pub(crate) struct LanguageTable {
     pub(crate) circular_pocket: Option<bool>,
     /// Whether G28 without axes moves all of them; default false.
     pub(crate) g28_all: Option<bool>,
+    /// The word of M98 that names the block to begin at, of the program that is called, or
+    /// of its own without P; default: there is none.
+    pub(crate) call_block: Option<CallBlockName>,
+    /// Whether of several G words of one modal group in a block the last counts; default
+    /// false: such a block is refused.
+    pub(crate) last_g_counts: Option<bool>,
+}
+
+/// The word of M98 that names a block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+pub(crate) enum CallBlockName {
+    Q,
+    H,
 }
 
 /// How G41 and G42 shift the path.

@@ -1,10 +1,10 @@
 //! The profile's structs to the controller.
 
 use super::controller_file::{
-    ArcRuleName, ArgumentName, CompensationTable, ControllerFile, CornerName, DistanceName,
-    DwellTable, FamilyName, FeedName, KnobTable, LanguageTable, LatheName, LeadName, PlannerTable,
-    PointName, RapidJointName, RapidKnobName, SpindleWaitName, TargetName, ToolChangeName,
-    UnitName, UnitsName,
+    ArcRuleName, ArgumentName, CallBlockName, CompensationTable, ControllerFile, CornerName,
+    DistanceName, DwellTable, FamilyName, FeedName, KnobTable, LanguageTable, LatheName, LeadName,
+    PlannerTable, PointName, RapidJointName, RapidKnobName, SpindleWaitName, TargetName,
+    ToolChangeName, UnitName, UnitsName,
 };
 use super::findings::Findings;
 use super::look_ahead::look_ahead;
@@ -165,6 +165,11 @@ fn dialect(table: &LanguageTable) -> Dialect {
         circular_pocket: table.circular_pocket.unwrap_or(false),
         g28_all: table.g28_all.unwrap_or(false),
     };
+        call_block: table.call_block.map(|name| match name {
+            CallBlockName::Q => b'Q',
+            CallBlockName::H => b'H',
+        }),
+        last_g_counts: table.last_g_counts.unwrap_or(false),
     dialect.active = dialect != Dialect::default();
     dialect
 }
