@@ -109,6 +109,18 @@ fn the_last_g_word_of_a_group_counts() {
         format!("1 modal-group-twice: {plain}\n")
     );
 }
+/// B-64310EN, parameter 3403 bit CIR: an arc without a centre is a straight line at F.
+#[test]
+fn an_arc_without_a_centre_may_be_a_line() {
+    let program = "G0 X0 Y0\nG2 X10. Y10. R10. F100.\nX30.\nY0 I0 J-5.\n";
+    let line = machine("fanuc", "[language]\narc_without_center = \"line\"\n");
+    let found = moves_on(&line, program);
+    assert_snapshot!(found, @"");
+    let said = "3 arc-center: an arc without a centre (I J) or R\n";
+    assert!(moves("fanuc", program).contains(said));
+    let refused = machine("fanuc", "[language]\narc_without_center = \"refused\"\n");
+    assert!(moves_on(&refused, program).contains(said));
+}
 /// B-63944EN, "Decimal Point Programming".
 #[test]
 fn numbers_without_a_point() {

@@ -53,6 +53,11 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
         let why = format!("bit DPI of {}", decimal.source);
         found.language(format!("decimal_point = \"{name}\""), why);
     }
+    if let Some(arc) = parameters.bit(3403, 5) {
+        let name = if arc.on { "refused" } else { "line" };
+        let why = format!("bit CIR of {}", arc.source);
+        found.language(format!("arc_without_center = \"{name}\""), why);
+    }
     if let Some(inch) = parameters.bit(0, 2).filter(|bit| bit.on) {
         found.language("units = \"inch\"", format!("bit INI of {}", inch.source));
     }

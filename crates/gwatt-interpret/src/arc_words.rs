@@ -3,6 +3,7 @@
 use super::arc::{self, ArcFault, Ends, Slack};
 use super::code::Motion;
 use super::control::{Control, Run};
+use super::letters::bit;
 use super::places::STANDSTILL_MM;
 use super::turned_arc::Tilted;
 use gwatt_machine::units::MM_PER_INCH;
@@ -12,6 +13,13 @@ use gwatt_syntax::source::Span;
 
 impl Control<'_> {
     pub(super) fn arc(&mut self, run: &mut Run<'_, '_>) {
+        let shape = bit(b'I') | bit(b'J') | bit(b'K') | bit(b'R');
+        if self.machine.controller.language.arc_without_center_is_line
+            && run.words.unused & shape == 0
+        {
+            run.facts.fixed = Some("it is a line under G2 or G3, without a centre");
+            return self.straight(run);
+        }
         let errors = run.report.diagnostics.errors;
         let mut end = self.position.at;
         let whole = run.whole();
@@ -140,9 +148,16 @@ impl Control<'_> {
                 "an arc without a centre ({} {}) or {radius}",
                 letters[0] as char, letters[1] as char
             );
+            let known = self.machine.controller.language.dialect.adapts();
             run.report
                 .error("arc-center", message, whole)
-                .help("write the centre or the radius");
+                .help(if known {
+                    "write the centre or the radius; where the control goes straight to the end \
+                 (Fanuc: parameter 3403 bit CIR = 0), write arc_without_center = \"line\" under \
+                 [language] in the machine file"
+                } else {
+                    "write the centre or the radius"
+                });
             return None;
         }
         let mut center = ends.start;

@@ -196,7 +196,7 @@ impl Control<'_> {
         false
     }
 
-    fn straight(&mut self, run: &mut Run<'_, '_>) {
+    pub(super) fn straight(&mut self, run: &mut Run<'_, '_>) {
         let rapid =
             self.modal.motion == Motion::Rapid && !self.machine.controller.language.rapid_uses_feed;
         let kind = if rapid {

@@ -101,6 +101,8 @@ pub struct Language {
     pub escape_mm: Option<f64>,
     /// See `escape_mm`.
     pub groove_return_mm: Option<f64>,
+    /// G2 and G3 without a centre and a radius are straight lines; else they are refused.
+    pub arc_without_center_is_line: bool,
     /// How far the radii of an arc at its start and end may always differ, mm: in a
     /// program in mm, and in one in inches; `None`: not known, the least of all.
     pub arc_tolerance_mm: Option<[f64; 2]>,
@@ -151,12 +153,12 @@ pub struct Dialect {
     pub circular_pocket: bool,
     /// G28 without axes moves all of them.
     pub g28_all: bool,
-}
-
     /// The word of M98 that names the block to begin at, such as `Q`.
     pub call_block: Option<u8>,
     /// Of several G words of one modal group in a block the last counts.
     pub last_g_counts: bool,
+}
+
 impl Language {
     /// Whether G61 puts blocks in exact stop and G64 ends that, on a control that has no word
     /// for one block.

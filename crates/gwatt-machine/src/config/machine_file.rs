@@ -196,6 +196,9 @@ pub(crate) struct OwnLanguageTable {
     pub(crate) groove_return_mm: Option<NotNegative>,
     /// How arc centres I J K are meant at power-on.
     pub(crate) arc_centre: Option<DistanceName>,
+    /// What a block with axes under G2 or G3 is that has neither a centre nor a radius (Fanuc:
+    /// parameter 3403 bit CIR); default: it is refused.
+    pub(crate) arc_without_center: Option<ArcWithoutCenterName>,
     /// How G41 and G42 shift the path.
     pub(crate) cutter_compensation: Option<CompensationTable>,
     /// G and M words that move no axis and raise no limit on this machine, besides those of
@@ -208,6 +211,16 @@ pub(crate) struct OwnLanguageTable {
     /// axis counts at its full speed and acceleration, and its place is not known
     /// afterwards. They must leave feed and modes as they are.
     pub(crate) unknown_moves: Option<Vec<At<String>>>,
+}
+
+/// What an arc without a centre and a radius is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum ArcWithoutCenterName {
+    /// A straight line to its end, at F.
+    Line,
+    /// An alarm.
+    Refused,
 }
 
 /// The spindle.

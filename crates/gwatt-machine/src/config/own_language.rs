@@ -3,7 +3,7 @@
 
 use super::controller_file::{DistanceName, UnitsName};
 use super::findings::Findings;
-use super::machine_file::OwnLanguageTable;
+use super::machine_file::{ArcWithoutCenterName, OwnLanguageTable};
 use super::value::{At, NotNegative};
 use super::{printer, profile};
 use crate::controller::Language;
@@ -33,6 +33,8 @@ pub(crate) fn take(
     let given = |length: &Option<NotNegative>| length.as_ref().map(|length| length.value);
     language.escape_mm = given(&own.escape_mm);
     language.groove_return_mm = given(&own.groove_return_mm);
+    language.arc_without_center_is_line =
+        own.arc_without_center == Some(ArcWithoutCenterName::Line);
     if let Some(feed) = &own.power_on_feed_mm_min {
         language.power_on_feed_mm_s = feed.value / SECONDS_PER_MINUTE;
     }

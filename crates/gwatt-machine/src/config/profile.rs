@@ -102,6 +102,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
         escape_mm: None,
         groove_return_mm: None,
+        arc_without_center_is_line: false,
         arc_tolerance_mm: table
             .arc_tolerance_mm
             .as_ref()
@@ -164,12 +165,12 @@ fn dialect(table: &LanguageTable) -> Dialect {
         per_revolution: table.feed == Some(FeedName::PerRevolution),
         circular_pocket: table.circular_pocket.unwrap_or(false),
         g28_all: table.g28_all.unwrap_or(false),
-    };
         call_block: table.call_block.map(|name| match name {
             CallBlockName::Q => b'Q',
             CallBlockName::H => b'H',
         }),
         last_g_counts: table.last_g_counts.unwrap_or(false),
+    };
     dialect.active = dialect != Dialect::default();
     dialect
 }
