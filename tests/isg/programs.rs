@@ -117,3 +117,18 @@ proptest! {
         let _ = moves(&format!("{text}\nP1={text}\nX{text}\n$FOR P1={text}\n#VAR\n{text}\n"));
     }
 }
+
+/// "Line break in NC block": gwatt reads blocks from one line.
+#[test]
+fn a_block_of_two_lines_is_refused_as_such() {
+    let said = super::refused("N10 G90 G0 X100 \\\n Y100\nM30\n");
+    let first = said.lines().next();
+    assert_eq!(
+        first,
+        Some(
+            "1 line-break: `\\` joins this line with the next one to one block, which gwatt does not \
+             follow: it reads a block from one line"
+        )
+    );
+    assert!(super::refused("G0 X1 \\ Y2\n").contains("`\\` has no meaning here"));
+}

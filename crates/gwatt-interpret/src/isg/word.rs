@@ -22,6 +22,13 @@ impl Reading<'_, '_, '_> {
                 return Err(self.cursor.refused("a text in quotes", "a macro", start));
             }
             _ if byte.is_ascii_alphabetic() || byte == b'@' => return self.address(block),
+            b'\\' if self.is_line_break() => {
+                self.cursor.at += 1;
+                let message = "`\\` joins this line with the next one to one block, which gwatt does \
+                               not follow: it reads a block from one line";
+                let help = "write the whole block on one line";
+                return Err(self.cursor.fault("line-break", message, help, start));
+            }
             _ => {
                 self.cursor.at += 1;
                 let message = format!("`{}` has no meaning here", byte as char);
@@ -30,6 +37,12 @@ impl Reading<'_, '_, '_> {
             }
         }
         Ok(None)
+    }
+
+    /// Whether nothing comes after the byte at this place ("Line break in NC block").
+    fn is_line_break(&self) -> bool {
+        let rest = self.cursor.text.get(self.cursor.at + 1..);
+        rest.is_some_and(|rest| rest.trim_ascii().is_empty())
     }
 
     /// A letter with its value, an assignment, or a call.
