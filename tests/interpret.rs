@@ -311,3 +311,28 @@ fn other_kinds_of_files_are_named() {
     let found = moves("marlin", "GCDE\u{1}\u{0}\u{0}");
     assert!(found.contains("this is binary G-code"), "{found}");
 }
+/// grbl, `protocol.c` and `serial.c`: a comment ends with its line at the latest, `?` is taken
+/// out of it, and `!`, `~` and 0x18 act when they arrive.
+#[test]
+fn comments_and_real_time_bytes_of_grbl() {
+    let twin = moves("grbl", "G0 X10\nG1 X0 F1000\n");
+    let found = moves("grbl", "?G0 X10 ( BURN ? (\nG1 X0 F1000 ?\n");
+    assert_eq!(found, twin);
+    assert_eq!(moves("grbl", "G0 X[1+2] ( a\n"), moves("grbl", "G0 X3\n"));
+    for (program, expected) in [
+        ("!\n", "`!` is grbl's feed hold"),
+        ("G0 X1 ~\n", "`~` is grbl's cycle start"),
+        ("G0 X1\x18\n", "the byte 0x18 is grbl's reset"),
+    ] {
+        let said = moves("grbl", program);
+        let expected = format!(
+            "1 real-time: {expected}, which acts when it arrives, not where it stands | take it out \
+             of the program\n"
+        );
+        assert_eq!(said, expected);
+    }
+    // `X1?0` is X10 there.
+    assert!(moves("grbl", "G0 X1?0\n").contains("unknown-text"));
+    assert!(moves("linuxcnc", "G0 X1 ( a\n").contains("unclosed-comment"));
+    assert!(moves("linuxcnc", "?\n").contains("unknown-text"));
+}

@@ -1,8 +1,11 @@
-//! grbl's lines that begin with `$` ("Commands", "Configuration v1.1").
+//! grbl's lines that begin with `$` ("Commands", "Configuration v1.1"), and what it takes out
+//! of others before it reads them.
 
 use super::control::{Control, Run};
+use super::report::Report;
 use crate::rules::Macros;
 use gwatt_motion::ActionKind;
+use gwatt_syntax::{Block, Issue, IssueKind, MAX_ISSUES};
 
 /// Commands that show something or unlock, and move nothing.
 const IDLE: [&str; 6] = ["$X", "$$", "$#", "$G", "$I", "$N"];
@@ -10,13 +13,61 @@ const IDLE: [&str; 6] = ["$X", "$$", "$#", "$G", "$I", "$N"];
 /// scale of the spindle.
 const IDLE_SETTINGS: [u32; 16] = [0, 1, 4, 5, 6, 10, 13, 20, 21, 22, 24, 25, 26, 27, 30, 31];
 
+/// What a byte asks of grbl at once; `?` only asks for its state.
+fn realtime(byte: u8) -> Option<&'static str> {
+    match byte {
+        b'!' => Some("`!` is grbl's feed hold"),
+        b'~' => Some("`~` is grbl's cycle start"),
+        0x18 => Some("the byte 0x18 is grbl's reset"),
+        _ => None,
+    }
+}
+
 impl Control<'_> {
+    fn is_grbl(&self) -> bool {
+        self.rules.macros == Macros::OWords && self.machine.controller.language.loose_o_words
+    }
+
     /// Whether a line is a command of grbl.
     pub(super) fn is_dollar(&self, text: &[u8]) -> bool {
-        let language = &self.machine.controller.language;
-        self.rules.macros == Macros::OWords
-            && language.loose_o_words
-            && text.trim_ascii_start().starts_with(b"$")
+        self.is_grbl() && text.trim_ascii_start().starts_with(b"$")
+    }
+
+    /// Reads a block that is more than plain words: without what grbl takes out of a line
+    /// before it reads it (`protocol.c`, `serial.c`).
+    pub(super) fn line_of_grbl(&mut self, block: &mut Block, report: &mut Report<'_, '_>) -> bool {
+        let issues = block.issues.len();
+        if !self.is_grbl() || issues == 0 || issues >= MAX_ISSUES {
+            return self.macro_words(block, report);
+        }
+        let text = report.text;
+        for issue in &block.issues {
+            let found = issue.span.of(text).iter().find_map(|byte| realtime(*byte));
+            if let Some(what) = found.filter(|_| issue.kind == IssueKind::UnknownText) {
+                let message = format!("{what}, which acts when it arrives, not where it stands");
+                report
+                    .error("real-time", message, issue.span)
+                    .help("take it out of the program");
+                return false;
+            }
+        }
+        // A comment that is not closed ends with its line.
+        let open = |issue: &Issue| issue.kind == IssueKind::UnclosedComment;
+        let end = block.text_end;
+        if let Some(comment) = block.issues.iter().find(|issue| open(issue)) {
+            block.text_end = comment.span.start;
+            block.issues.retain(|issue| !open(issue));
+        }
+        let asks = |issue: &Issue| {
+            let bytes = issue.span.of(text);
+            issue.kind == IssueKind::UnknownText && bytes.iter().all(|byte| *byte == b'?')
+        };
+        if block.issues.iter().all(asks) {
+            block.issues.clear();
+        }
+        let transfers = !block.issues.is_empty() && self.macro_words(block, report);
+        block.text_end = end;
+        transfers
     }
 
     /// Executes it.

@@ -24,7 +24,7 @@ impl Language for MacroLanguage {
         block: &mut Block,
         report: &mut Report<'_, '_>,
     ) -> bool {
-        control.macro_words(block, report)
+        control.line_of_grbl(block, report)
     }
 
     fn execute(&self, control: &mut Control<'_>, run: &mut Run<'_, '_>, errors: u64) {
