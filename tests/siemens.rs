@@ -441,3 +441,17 @@ fn axes_by_computed_names() {
         assert_eq!(refusal(line), expected, "{line}");
     }
 }
+
+/// "Channel-specific diameter/radius programming (DIAMON, DIAM90, DIAMOF, DIAMCYCOF)": under
+/// DIAM90 places of X are diameters, increments radii, word by word too.
+#[test]
+fn diam90_halves_places_and_no_increments() {
+    let ends = values(
+        "G90 DIAM90\nX50\nG91 X10\nG90 X=IC(-5)\nG91 X=AC(20)\nG90 DIAMON\nX=IC(20)\nDIAMOF X7\n\
+         DIAM90 X8\nDIAMCYCOF X9\n",
+    );
+    assert_eq!(ends, [25.0, 35.0, 30.0, 10.0, 20.0, 7.0, 4.0, 9.0]);
+    // Actual values are diameters under G91 too.
+    let read = values("DIAM90 X50\nR1=$AA_IW[X]\nG91\nR2=$AA_IW[X]\nDIAMOF G90 X=R1+R2\n");
+    assert_eq!(read, [25.0, 100.0]);
+}

@@ -37,10 +37,6 @@ fn refusals_name_the_construct() {
             "1 unsupported-word: CYCLE800 is a swivelled plane, which turns axes as the machine is built, which gwatt does not follow",
         ),
         (
-            "DIAM90",
-            "1 unsupported-word: DIAM90 is diameters under G90 only, which gwatt does not follow",
-        ),
-        (
             "ID=1 DO $AC_OVR=50",
             "1 unsupported-word: ID is a synchronized action, which gwatt does not follow",
         ),
@@ -171,7 +167,7 @@ fn refusals_name_the_construct() {
         ("SCALE X0", "1 frame: a scale of 0"),
         (
             "DIAMON TRANS X5",
-            "1 frame: a shift of X where X words are diameters (DIAMON)",
+            "1 frame: a shift of X where X words are diameters (DIAMON, DIAM90)",
         ),
         ("FOR R1=1 3", "1 flow: FOR without TO"),
         ("GOTOF", "1 flow: a jump without its destination"),

@@ -74,7 +74,7 @@ impl Reading<'_, '_, '_> {
         match kind {
             "TRANS" => {
                 if self.state.diameter && values[0].is_some() {
-                    let message = "a shift of X where X words are diameters (DIAMON)";
+                    let message = "a shift of X where X words are diameters (DIAMON, DIAM90)";
                     let help = "write it under DIAMOF";
                     return Err(self.cursor.fault("frame", message, help, start));
                 }

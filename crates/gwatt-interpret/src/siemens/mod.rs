@@ -156,7 +156,10 @@ pub(super) struct Siemens {
     pattern: Option<PatternAt>,
     /// OVR as a factor.
     feed_factor: f64,
+    /// DIAMON and DIAM90: places of X are diameters.
     diameter: bool,
+    /// DIAM90: increments of X are radii.
+    radius_increments: bool,
     polar: Polar,
     /// LIMS, 1/min.
     spindle_limit: Option<f64>,
@@ -196,6 +199,7 @@ impl Siemens {
             pattern: None,
             feed_factor: 1.0,
             diameter: false,
+            radius_increments: false,
             polar: Polar::default(),
             spindle_limit: None,
             surface_speed: false,
@@ -299,7 +303,7 @@ impl Siemens {
         self.uncalled
     }
 
-    /// Whether words of X are diameters (DIAMON).
+    /// Whether words of X are diameters (DIAMON, DIAM90).
     pub(super) fn in_diameters(&self) -> bool {
         self.diameter
     }

@@ -16,11 +16,11 @@ impl Reading<'_, '_, '_> {
             "EXTERN" => self.cursor.pass_over_rest(),
             // "Deselection of frames (G53, G153, SUPA, G500)".
             "SUPA" => self.extra().machine_coordinates = true,
-            "DIAMON" => self.state.diameter = true,
-            "DIAMOF" => self.state.diameter = false,
-            "DIAM90" => {
-                let reason = "diameters under G90 only";
-                return Err(self.cursor.refused(name, reason, start));
+            // "Channel-specific diameter/radius programming (DIAMON, DIAM90, DIAMOF,
+            // DIAMCYCOF)": under DIAM90 increments are radii, places of X diameters.
+            "DIAMON" | "DIAM90" | "DIAMOF" | "DIAMCYCOF" => {
+                self.state.diameter = matches!(name, "DIAMON" | "DIAM90");
+                self.state.radius_increments = name == "DIAM90";
             }
             "TRANS" | "ATRANS" | "ROT" | "AROT" | "SCALE" | "ASCALE" | "MIRROR" | "AMIRROR" => {
                 self.frame_word(name, start)?;

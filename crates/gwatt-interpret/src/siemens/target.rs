@@ -175,17 +175,18 @@ impl Control<'_> {
                 refuse_axis(letter, run);
                 continue;
             };
-            let diameter = if axis == 0 && state.diameter {
-                0.5
-            } else {
-                1.0
-            };
-            let value = value * self.unit_of(axis) * diameter;
             let measure = match state.extra.measures[axis] {
                 Measure::Modal if self.modal.absolute => Measure::Absolute,
                 Measure::Modal => Measure::Increment,
                 measure => measure,
             };
+            let radius = state.radius_increments && measure == Measure::Increment;
+            let diameter = if axis == 0 && state.diameter && !radius {
+                0.5
+            } else {
+                1.0
+            };
+            let value = value * self.unit_of(axis) * diameter;
             target.named.insert(axis);
             let unknown = self.position.unknown.contains(axis);
             match measure {
