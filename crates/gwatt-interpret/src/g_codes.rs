@@ -86,6 +86,9 @@ pub(super) fn refused_g_name(number: u16) -> &'static str {
     }
 }
 
+/// M100 to M199 of LinuxCNC.
+pub(super) const USER_DEFINED: &str = "a user-defined word";
+
 /// What a refused M word is, for its message.
 pub(super) fn refused_m_name(number: u16) -> &'static str {
     match number {
@@ -96,7 +99,7 @@ pub(super) fn refused_m_name(number: u16) -> &'static str {
         970..=990 => "a subprogram call or return",
         960 => "a jump or an interrupt by an input",
         1090 => "a value that the operator types",
-        1000..=1999 => "a user-defined word",
+        1000..=1999 => USER_DEFINED,
         _ => "a word",
     }
 }

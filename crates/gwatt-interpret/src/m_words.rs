@@ -108,12 +108,14 @@ impl Control<'_> {
                 continue;
             }
             let Some(kind) = self.m_kind(number) else {
-                run.report.refused_m(Word {
+                let word = Word {
                     letter: b'M',
                     value,
                     span,
                     number: span,
-                });
+                };
+                let language = &self.machine.controller.language;
+                run.report.refused_m(word, language);
                 continue;
             };
             match kind {

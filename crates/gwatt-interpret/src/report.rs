@@ -3,7 +3,7 @@
 use crate::rules::rules_of;
 use std::collections::HashSet;
 
-use super::g_codes::{code_number, refused_m_name};
+use super::g_codes::{USER_DEFINED, code_number, refused_m_name};
 use gwatt_machine::Language;
 use gwatt_syntax::Word;
 use gwatt_syntax::diagnostic::{Diagnostic, Severity};
@@ -85,8 +85,12 @@ impl Report<'_, '_> {
     }
 
     /// Reports an M word that is not supported.
-    pub(super) fn refused_m(&mut self, word: Word) {
-        let name = code_number(word.value).map_or("a word", refused_m_name);
+    pub(super) fn refused_m(&mut self, word: Word, language: &Language) {
+        let mut name = code_number(word.value).map_or("a word", refused_m_name);
+        if name == USER_DEFINED && language.family.facts().printer {
+            // Users define them on LinuxCNC; firmware knows a word or does not.
+            name = "a word";
+        }
         self.refused(b'M', word, name);
     }
 

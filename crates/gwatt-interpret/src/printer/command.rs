@@ -195,6 +195,12 @@ impl Control<'_> {
                 self.ordinary(run, (letter, number, span), parameters);
                 self.shift_axes(&Parameters::new());
             }
+            // A spline to where the axes stand, or a word that is not known: nothing moves.
+            // What a line of axes alone means after it, firmwares see differently.
+            (b'G', 50) if parameters.is_empty() => {
+                self.modal.motion = Motion::None;
+                run.act(ActionKind::Other, 5.0);
+            }
             (b'G', 280) => self.home(run, parameters, span),
             (b'G', 600) => self.save_position(run, parameters, span),
             (b'G', 610) => self.return_to_position(run, parameters, span),
