@@ -311,6 +311,7 @@ fn other_kinds_of_files_are_named() {
     let found = moves("marlin", "GCDE\u{1}\u{0}\u{0}");
     assert!(found.contains("this is binary G-code"), "{found}");
 }
+
 /// grbl, `protocol.c` and `serial.c`: a comment ends with its line at the latest, `?` is taken
 /// out of it, and `!`, `~` and 0x18 act when they arrive.
 #[test]
@@ -335,4 +336,14 @@ fn comments_and_real_time_bytes_of_grbl() {
     assert!(moves("grbl", "G0 X1?0\n").contains("unknown-text"));
     assert!(moves("linuxcnc", "G0 X1 ( a\n").contains("unclosed-comment"));
     assert!(moves("linuxcnc", "?\n").contains("unknown-text"));
+}
+
+/// LinuxCNC knows no comment inside another.
+#[test]
+fn nested_comments_are_refused_as_such() {
+    let said = "1 nested-comment: nested comment: the first `)` ends it, and what comes after it is \
+                read | take the inner parentheses out, or begin the comment with `;`\n";
+    assert_eq!(moves("linuxcnc", "( (text) more.\n"), said);
+    assert_eq!(moves("fanuc", "(a) ( (text) more )\n"), said);
+    assert!(moves("linuxcnc", "(text) more\n").contains("unknown-text"));
 }

@@ -21,6 +21,36 @@ pub(super) fn not_finite(block: &Block) -> Option<Fault> {
     Some(Fault::new("syntax", message, help, issue.span))
 }
 
+/// Whether what is not understood comes after a comment with a `(` in it, which is said then.
+fn refuses_nested_comment(block: &Block, report: &mut Report<'_, '_>) -> bool {
+    let text = report.text;
+    let end = block.issues.first().map_or(0, |issue| issue.span.start) as usize;
+    let mut at = 0;
+    while let Some(begin) = text
+        .get(at..end)
+        .and_then(|rest| memchr::memchr2(b'(', b';', rest))
+    {
+        let begin = at + begin;
+        let rest = text.get(begin..).unwrap_or_default();
+        let Some(close) = memchr::memchr(b')', rest).filter(|_| rest.starts_with(b"(")) else {
+            return false;
+        };
+        if rest
+            .get(1..close)
+            .is_some_and(|inside| inside.contains(&b'('))
+        {
+            let span = Span::new(begin, begin + close + 1);
+            let message = "nested comment: the first `)` ends it, and what comes after it is read";
+            report
+                .error("nested-comment", message, span)
+                .help("take the inner parentheses out, or begin the comment with `;`");
+            return true;
+        }
+        at = begin + close + 1;
+    }
+    false
+}
+
 impl Control<'_> {
     /// Reads a block of RS274/NGC or of Fanuc's custom macro B: see [`super::control::Language::read`].
     #[cold]
@@ -40,6 +70,7 @@ impl Control<'_> {
                 }
                 statement
             }
+            Err(_) if refuses_nested_comment(block, report) => return false,
             Err(Unread::Fault(fault)) => {
                 report
                     .error(fault.rule, fault.message, fault.span)
