@@ -109,6 +109,7 @@ fn the_last_g_word_of_a_group_counts() {
         format!("1 modal-group-twice: {plain}\n")
     );
 }
+
 /// B-64310EN, parameter 3403 bit CIR: an arc without a centre is a straight line at F.
 #[test]
 fn an_arc_without_a_centre_may_be_a_line() {
@@ -121,6 +122,19 @@ fn an_arc_without_a_centre_may_be_a_line() {
     let refused = machine("fanuc", "[language]\narc_without_center = \"refused\"\n");
     assert!(moves_on(&refused, program).contains(said));
 }
+
+/// Lengths without a point are noted wherever they stand; a level of G05.1 is none.
+#[test]
+fn numbers_without_a_point_are_noted_in_corners_and_arguments() {
+    let noted = |program: &str| notes("fanuc", program).contains(&"no-point");
+    assert!(noted("G0 X0. Y0.\nG1 X100. ,C5 F1000.\nY50.\n"));
+    assert!(!noted("G0 X0. Y0.\nG1 X100. ,C5. F1000.\nY50.\n"));
+    let call = "G0 X0.\nG65 P100 A100\nM30\nO100\nG0 X#1\nM99\n";
+    assert!(noted(call));
+    assert!(!noted(&call.replace("A100", "A100.")));
+    assert!(!noted("G05.1 Q1 R5\nG0 X1.\nG05.1 Q0\n"));
+}
+
 /// B-63944EN, "Decimal Point Programming".
 #[test]
 fn numbers_without_a_point() {

@@ -96,7 +96,7 @@ impl Control<'_> {
                     .help("write it in the block of a G1, G2 or G3, without M words that stop");
                 return false;
             }
-            self.fanuc_corner(word, text);
+            self.fanuc_corner(word, report);
         }
         if let Some(span) = statement.alarm {
             let message =

@@ -197,12 +197,20 @@ impl Control<'_> {
                     }
                     last = letter;
                     let variable = 3 * sets + 1 + usize::from(letter - b'I');
-                    set(&mut arguments, variable, self.argument(word, run));
+                    set(
+                        &mut arguments,
+                        variable,
+                        self.argument(word, &mut run.report),
+                    );
                 }
                 letter => {
                     if let Some((_, variable)) = ARGUMENT_I.iter().find(|(name, _)| *name == letter)
                     {
-                        set(&mut arguments, *variable, self.argument(word, run));
+                        set(
+                            &mut arguments,
+                            *variable,
+                            self.argument(word, &mut run.report),
+                        );
                     }
                 }
             }
@@ -230,6 +238,7 @@ impl Control<'_> {
         let call = Call {
             target: Target::Program(label),
             times,
+            block: None,
             arguments: Some(Box::new(arguments)),
         };
         self.transfer = Some(if number == 650 {
@@ -238,7 +247,6 @@ impl Control<'_> {
             Transfer::ModalCall(Some(call))
         });
         true
-            block: None,
     }
 }
 

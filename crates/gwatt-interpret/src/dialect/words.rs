@@ -5,6 +5,8 @@ use crate::code::{GCode, Motion};
 use crate::compensation::Insert;
 use crate::control::{Control, Run};
 use crate::letters::{AXIS_LETTERS, bit};
+use crate::places::EXTRUDER;
+use crate::report::Report;
 use gwatt_machine::units::MM_PER_INCH;
 use gwatt_machine::{Dialect, Lathe, Point};
 use gwatt_syntax::Word;
@@ -83,6 +85,12 @@ impl Control<'_> {
         let number = begins.unwrap_or(self.special.active);
         let shifts = matches!(number, 760 | 870) && self.modal.plane[2] != 2;
         let counts = self.dialect().lathe.is_none() && number != 0 && !shifts;
+        let mut codes = run.words.g.iter();
+        let ignored = !run.words.g.is_empty() && codes.all(|(code, ..)| *code == GCode::Ignored);
+        if ignored && !run.words.axes().any(|(axis, _)| axis != EXTRUDER) {
+            // R of G05.1 Q1 R5 is a level.
+            return;
+        }
         for word in &run.block.words {
             if !LENGTHS.contains(&word.letter)
                 || word.letter == b'K' && counts
@@ -94,7 +102,7 @@ impl Control<'_> {
                 continue;
             }
             if point == Point::Calculator {
-                self.note_no_point(word.span, run);
+                self.note_no_point(word.span, &mut run.report);
                 return;
             }
             let least = match word.letter {
@@ -107,7 +115,7 @@ impl Control<'_> {
     }
 
     /// Says once what numbers without a point are taken for, where the machine file does not.
-    fn note_no_point(&self, span: Span, run: &mut Run<'_, '_>) {
+    fn note_no_point(&self, span: Span, report: &mut Report<'_, '_>) {
         if self.dialect().point_is_known {
             return;
         }
@@ -115,7 +123,7 @@ impl Control<'_> {
                        degrees; where the control takes them for least increments (Fanuc: \
                        parameter 3401 bit DPI = 0), write decimal_point = \"least-increment\" under \
                        [language] in the machine file, else \"calculator\"";
-        run.report.note_once(NO_POINT, message, span);
+        report.note_once(NO_POINT, message, span);
     }
 
     /// Q of a milling cycle, in units of the program. Of a peck, `depth` is that of the hole:
@@ -135,7 +143,7 @@ impl Control<'_> {
         if value == 0.0 {
             return Some(value);
         }
-        self.note_no_point(word.span, run);
+        self.note_no_point(word.span, &mut run.report);
         let too_deep = !self.dialect().point_is_known
             && depth.is_some_and(|depth| value.abs() > depth && fine.abs() < depth);
         Some(if too_deep { fine } else { value })
@@ -158,8 +166,20 @@ impl Control<'_> {
         Some(word.value * least * unit)
     }
 
+    /// Notes a length that has no point, which is not scaled.
+    fn note_point(&self, word: &Word, report: &mut Report<'_, '_>) {
+        if self.dialect().point == Some(Point::Calculator)
+            && word.value != 0.0
+            && !has_point(word.number.of(report.text))
+        {
+            self.note_no_point(word.span, report);
+        }
+    }
+
     /// `,C` or `,R` of the present block.
-    pub(crate) fn fanuc_corner(&mut self, word: &Word, text: &[u8]) {
+    pub(crate) fn fanuc_corner(&mut self, word: &Word, report: &mut Report<'_, '_>) {
+        self.note_point(word, report);
+        let text = report.text;
         let least =
             self.dialect().point == Some(Point::LeastIncrement) && !has_point(word.number.of(text));
         let scale = match least {
@@ -182,10 +202,14 @@ impl Control<'_> {
 
     /// The value of an argument of a macro call (B-63944EN, "Macro Call": the
     /// decimal places of each address).
-    pub(crate) fn argument(&self, word: &Word, run: &Run<'_, '_>) -> f64 {
+    pub(crate) fn argument(&self, word: &Word, report: &mut Report<'_, '_>) -> f64 {
+        let length = LENGTHS.contains(&word.letter) || word.letter == b'Q';
+        if length {
+            self.note_point(word, report);
+        }
         let scaled = self.dialect().point == Some(Point::LeastIncrement)
-            && (LENGTHS.contains(&word.letter) || word.letter == b'Q')
-            && !has_point(word.number.of(run.report.text));
+            && length
+            && !has_point(word.number.of(report.text));
         let inch = self.modal.mm_per_unit == MM_PER_INCH;
         match word.letter {
             _ if !scaled => word.value,
@@ -225,7 +249,7 @@ impl Control<'_> {
         if matches!(number, 51 | 220) {
             // G5.1 Q2 X0 Y0 Z0, G22 X Y Z I J K: axes that it concerns.
             run.words.unused = 0;
-        } else if alone && !run.words.axes().any(|(axis, _)| axis != 9) {
+        } else if alone && !run.words.axes().any(|(axis, _)| axis != EXTRUDER) {
             run.words.unused &= AXIS_LETTERS & !bit(b'E');
         }
     }
