@@ -91,11 +91,11 @@ impl Control<'_> {
             return Some(Call {
                 target: Target::Program(Label::Name(name)),
                 times: repetitions(times, span, run)?,
-                block: self.begins_at(number, true, span, run)?,
+                block: self.begins_at(number, true, span, run).ok()?,
                 arguments: None,
             });
         }
-        let block = self.begins_at(number, program.is_some(), span, run)?;
+        let block = self.begins_at(number, program.is_some(), span, run).ok()?;
         if block.is_some() && program.is_none() {
             return Some(Call {
                 target: Target::Here,
@@ -132,34 +132,34 @@ impl Control<'_> {
         })
     }
 
-    /// The block that M98 begins at, where a word names one; `None` when it was reported.
+    /// The block that M98 begins at, where a word names one; an error when it was reported.
     fn begins_at(
         &self,
         number: u16,
         program: bool,
         span: Span,
         run: &mut Run<'_, '_>,
-    ) -> Option<Option<u64>> {
+    ) -> Result<Option<u64>, ()> {
         let letter = self.machine.controller.language.dialect.call_block;
         let Some(letter) = letter.filter(|_| number == 980) else {
-            return Some(None);
+            return Ok(None);
         };
         let Some(value) = run.words.take(letter) else {
-            return Some(None);
+            return Ok(None);
         };
         let name = char::from(letter);
         let Some(block) = whole(value) else {
             let message = format!("{name} of M98 is not the number of a block");
             let help = format!("write the number after N of that block, as in M98 {name}100");
             run.report.error("subprogram", message, span).help(help);
-            return None;
+            return Err(());
         };
         if program && letter == b'Q' {
             let message = "M98 begins at the block that Q names; on a Fanuc parameter 6005#0 \
                            (SQC) has to be 1 for that";
             run.report.note_once("call-from-block", message, span);
         }
-        Some(Some(block))
+        Ok(Some(block))
     }
 
     /// G65, G66 and G67: takes the whole block.
