@@ -113,11 +113,15 @@ fn the_last_g_word_of_a_group_counts() {
 /// B-64310EN, parameter 3403 bit CIR: an arc without a centre is a straight line at F.
 #[test]
 fn an_arc_without_a_centre_may_be_a_line() {
-    let program = "G0 X0 Y0\nG2 X10. Y10. R10. F100.\nX30.\nY0 I0 J-5.\n";
+    let program = "G2 X10. Y10. R10. F100.\nX30.\nY0 I0 J-5.\n";
     let line = machine("fanuc", "[language]\narc_without_center = \"line\"\n");
     let found = moves_on(&line, program);
-    assert_snapshot!(found, @"");
-    let said = "3 arc-center: an arc without a centre (I J) or R\n";
+    assert_snapshot!(found, @r"
+    1 arc X10.0000 Y10.0000 center 10.0000,0.0000 turns -0.2500 F100.0000
+    2 feed X30.0000 F100.0000
+    3 arc X30.0000 Y0.0000 center 30.0000,5.0000 turns -0.5000 F100.0000
+    ");
+    let said = "2 arc-center: an arc without a centre (I J) or R\n";
     assert!(moves("fanuc", program).contains(said));
     let refused = machine("fanuc", "[language]\narc_without_center = \"refused\"\n");
     assert!(moves_on(&refused, program).contains(said));
