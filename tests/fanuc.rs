@@ -91,17 +91,14 @@ fn the_last_g_word_of_a_group_counts() {
     assert_eq!(found, moves("fanuc", "G0 X5.\nG55 G21 G17 G40 G94\nX6.\n"));
     assert!(notes("fanuc", "G1 G0 X5.\n").contains(&"last-g-counts"));
     let refused = |program: &str, expected: &str| {
-        assert_eq!(
-            moves("fanuc", program),
-            format!("1 modal-group-twice: {expected}\n"),
-            "{program}"
-        );
+        let said = format!("1 modal-group-twice: {expected}\n");
+        assert!(moves("fanuc", program).starts_with(&said), "{program}");
     };
     let plain = "two G words of one modal group in a block";
     refused("G0 G81 X5. Z-5. R2. F100.\n", plain);
     refused("G28 G52 X5.\n", plain);
     refused(
-        "G90 X5. G91 Y5.\n",
+        "G0 G90 X5. G91 Y5.\n",
         "two G words of one modal group, with words before and after the last of them",
     );
     assert_eq!(

@@ -137,7 +137,7 @@ fn modal_calls_and_calls_of_blocks() {
 fn calls_that_begin_at_a_block() {
     let program = "O1\nG0 X1.\nM98 Q100\nX2.\nM98 Q100 L2\nM30\nN100 G91 X10.\nG90\nM99\n";
     assert_eq!(ends("fanuc", program), [1.0, 11.0, 2.0, 12.0, 22.0]);
-    let other = "O1\nM98 P2 Q20\nX9.\nM30\nO2\nN20 G0 X1.\nN30 X2.\nM99\nO3\nN20 X77.\nM99\n";
+    let other = "O1\nM98 P2 Q20\nX9.\nM30\nO2\nN20 G0 X1.\nN30 G0 X2.\nM99\nO3\nN20 X77.\nM99\n";
     assert_eq!(ends("fanuc", &other.replace("Q20", "Q30")), [2.0, 9.0]);
     assert_eq!(
         ends("fanuc-lathe-b", &other.replace("Q20", "Q30")),
