@@ -15,9 +15,11 @@ use crate::source::split_line_end;
 use crate::syntax::{Block, Word};
 
 /// Words that may give such a block another meaning than the lines before it have.
-const SETTINGS: [f64; 12] = [
-    20.0, 21.0, 43.0, 44.0, 49.0, 52.0, 54.0, 55.0, 56.0, 57.0, 58.0, 59.0,
+const SETTINGS: [f64; 11] = [
+    20.0, 21.0, 43.0, 44.0, 52.0, 54.0, 55.0, 56.0, 57.0, 58.0, 59.0,
 ];
+/// The word that ends the tool's length: places are those without it, in the lines before too.
+const LENGTH_OFF: f64 = 49.0;
 
 /// M words that stop or end the program once the axes stand.
 const STOPS: [f64; 4] = [0.0, 1.0, 2.0, 30.0];
@@ -169,6 +171,10 @@ impl Return<'_> {
     /// less surely.
     fn way(&self, mv: &Move, end: &AxisValues) -> String {
         let mut words = String::from(if self.absolute_before { "G0" } else { "G90 G0" });
+        let ends_length = |word: &Word| word.letter == b'G' && word.value == LENGTH_OFF;
+        if self.block.words.iter().any(ends_length) {
+            words.push_str(" G49");
+        }
         for axis in ALL_AXES {
             if commanded(mv).contains(axis as usize) {
                 let value = decimal(rounded(end[axis as usize]), true);

@@ -152,13 +152,7 @@ impl<'m> Rewriter<'m> {
             self.write_pieces(view, out);
             self.turn_knobs(view.change, view, out);
         }
-        let apart = apart(view) && !facts.compensated;
-        if apart {
-            self.restore(view.before, view.knobs, out);
-            let [per_minute, _] = view.after.per_minute_and_back();
-            self.insert_line(&g_word(per_minute), out);
-            self.written.feed = None;
-        }
+        let apart = self.begin_apart(view, out);
         if view.stops && !self.stopped {
             self.insert_stop(out);
         }
@@ -248,6 +242,18 @@ impl<'m> Rewriter<'m> {
             out.extend_from_slice(&self.line_end);
             self.complete = true;
         }
+    }
+
+    /// A line that lets F be by the minute, where it is not for others. True where it is needed.
+    fn begin_apart(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
+        let apart = apart(view) && !view.facts.compensated;
+        if apart {
+            self.restore(view.before, view.knobs, out);
+            let [per_minute, _] = view.after.per_minute_and_back();
+            self.insert_line(&g_word(per_minute), out);
+            self.written.feed = None;
+        }
+        apart
     }
 
     /// A line that puts back what was in force, after a feed per minute among others.

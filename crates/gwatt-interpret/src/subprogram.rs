@@ -197,20 +197,14 @@ impl Control<'_> {
                     }
                     last = letter;
                     let variable = 3 * sets + 1 + usize::from(letter - b'I');
-                    set(
-                        &mut arguments,
-                        variable,
-                        self.argument(word, &mut run.report),
-                    );
+                    let value = self.argument(word, &mut run.report);
+                    set(&mut arguments, variable, value);
                 }
                 letter => {
                     if let Some((_, variable)) = ARGUMENT_I.iter().find(|(name, _)| *name == letter)
                     {
-                        set(
-                            &mut arguments,
-                            *variable,
-                            self.argument(word, &mut run.report),
-                        );
+                        let value = self.argument(word, &mut run.report);
+                        set(&mut arguments, *variable, value);
                     }
                 }
             }

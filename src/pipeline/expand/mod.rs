@@ -338,18 +338,6 @@ fn survey_path(
         if lathe {
             series.stays = turning::STAYS;
         }
-        let turning = turning_word(line.block).filter(|_| !interpreter.in_cycle());
-        let cycle = CycleBlock {
-            text: line.text,
-            block: line.block,
-            cycle_word: turning.or(facts.motion_word).map(|word| word.span),
-            number: turning.map_or(interpreter.cycle(), |word| {
-                (word.value * 10.0).round() as u16
-            }),
-            steps: line.steps,
-            modal: interpreter.modal(),
-            motion_before: interpreter.motion_before_cycle(),
-        };
         rigid |= line.block.words.iter().any(is_rigid);
         let taps = TAPS.contains(&interpreter.cycle()) && singles.motion_survives_cycles();
         let fixed = fixed.or((rigid && taps).then_some(RIGID));
@@ -362,6 +350,7 @@ fn survey_path(
             series.refuse(number, why);
             continue;
         }
+        let cycle = cycle_of(&line);
         take_in(
             series,
             (number, line.block),
@@ -372,6 +361,23 @@ fn survey_path(
     close(&mut open, all);
     let mut notes = front.diagnostics.list.iter();
     Ok(notes.any(|note| note.rule == NO_POINT))
+}
+
+/// A block of a cycle that holds until it is ended.
+fn cycle_of<'l>(line: &'l Line<'_, '_>) -> CycleBlock<'l> {
+    let interpreter = line.interpreter;
+    let turning = turning_word(line.block).filter(|_| !interpreter.in_cycle());
+    CycleBlock {
+        text: line.text,
+        block: line.block,
+        cycle_word: turning.or(line.facts.motion_word).map(|word| word.span),
+        number: turning.map_or(interpreter.cycle(), |word| {
+            (word.value * 10.0).round() as u16
+        }),
+        steps: line.steps,
+        modal: interpreter.modal(),
+        motion_before: interpreter.motion_before_cycle(),
+    }
 }
 
 /// The word of a turning cycle along a contour, which is not modal.
