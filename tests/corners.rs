@@ -304,14 +304,16 @@ X0. F24000
 F30000
 M2
 ");
-    let inside = mill.fits("G1 X0. F600\nX400. F30000 ,R2.\nY20. F600\nX0\nM2\n");
-    assert_snapshot!(inside, @r"
-    G1 X0. F600
-    X400. F24000 ,R2.
-    Y20. F600
-    X0
-    M2
-    ");
+    let reasons = mill.reasons("G1 X0. F600\nX400. F30000 ,R2.\nY20. F600\nM2\n");
+    let first = reasons.first().expect("a reason");
+    assert_eq!(
+        (first.line, first.text.as_slice()),
+        (2, b"X400. F30000 ,R2.".as_slice())
+    );
+    assert_eq!(
+        first.message,
+        "the block may not be changed: a corner is cut or rounded there"
+    );
 }
 
 #[test]

@@ -139,9 +139,10 @@ fn calls_that_begin_at_a_block() {
     assert_eq!(ends("fanuc", program), [1.0, 11.0, 2.0, 12.0, 22.0]);
     let other = "O1\nM98 P2 Q20\nX9.\nM30\nO2\nN20 G0 X1.\nN30 G0 X2.\nM99\nO3\nN20 X77.\nM99\n";
     assert_eq!(ends("fanuc", &other.replace("Q20", "Q30")), [2.0, 9.0]);
+    // Diameters.
     assert_eq!(
         ends("fanuc-lathe-b", &other.replace("Q20", "Q30")),
-        [2.0, 9.0]
+        [1.0, 4.5]
     );
     let by_h = other.replace("Q20", "H30");
     assert_eq!(ends("mitsubishi", &by_h), [2.0, 9.0]);

@@ -158,6 +158,10 @@ impl Entry {
     /// One change for all its moves: the lower value of each word.
     #[inline]
     pub(super) fn change(&self) -> Option<Change> {
+        // Round a corner a rapid is another path than a feed.
+        if self.facts.compensated && self.decided.iter().any(|(_, it)| it.obstacle.is_some()) {
+            return None;
+        }
         let mut changes = self
             .decided
             .iter()
@@ -329,7 +333,7 @@ impl Entry {
     }
 
     /// What forbids G1 for G0; `stays`: it ends at rest as a feed too.
-    fn stays_rapid(&self, machine: &Machine, stays: bool) -> [(bool, &'static str); 5] {
+    fn stays_rapid(&self, machine: &Machine, stays: bool) -> [(bool, &'static str); 6] {
         let facts = &self.facts;
         let family = machine.controller.language.family.facts();
         [
@@ -343,6 +347,10 @@ impl Entry {
                 "its motion word is worked out by the program",
             ),
             (!stays, WITHOUT_STOP),
+            (
+                facts.compensated && self.moves > 1,
+                "it goes round a corner under compensation",
+            ),
             (
                 // The blocks that follow would become lines too.
                 facts.no_motion_word && machine.path.rapid == RapidPath::Independent,

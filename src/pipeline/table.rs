@@ -23,7 +23,7 @@ pub(super) struct Table {
     pub(super) skips: bool,
     /// Files of subprograms are written too: their lines may change.
     with_files: bool,
-    /// The lines are written in the order in which they run.
+    /// Lines are written in the order in which they run.
     in_order: bool,
     /// How many of the texts are programs themselves; those are the first.
     programs: u16,
@@ -36,7 +36,7 @@ pub(super) struct Table {
     left_feeds: LeftFeeds,
     stops_before: StopsBefore,
     within: Within,
-    /// Lines that nothing is decided about but the F that they count on.
+    /// Lines that nothing is decided about but what is in force before them.
     restored: HashMap<LineKey, Decision>,
 }
 
@@ -47,6 +47,8 @@ struct Entered {
     unanimous: bool,
     /// After all runs so far the same F was in force.
     one_feed: bool,
+    /// The lowest that was.
+    lowest_feed: Option<FeedValue>,
     /// The F that it leaves may be another than the original's.
     leaves_feed: bool,
     /// Corners were taken in one way.
@@ -106,8 +108,7 @@ impl Table {
         }
     }
 
-    /// The same where what is decided is written while the program is read, from top to
-    /// bottom.
+    /// The same where what is decided is written while the program is read.
     pub(super) fn written_in_order(self) -> Self {
         Self {
             in_order: true,
@@ -150,6 +151,9 @@ impl Table {
             entered.one_corner &= entered.sight.corner == sight.corner;
             entered.lacks_feed |= entry.lacks_feed();
             entered.one_feed &= entered.sight.feed == sight.feed;
+            let length = |feed: &FeedValue| feed.value * feed.mm_per_unit;
+            let known = entered.lowest_feed.into_iter().chain(sight.feed);
+            entered.lowest_feed = known.min_by(|a, b| length(a).total_cmp(&length(b)));
             entered.unanimous &= Sight {
                 corner,
                 feed: sight.feed,
@@ -158,6 +162,7 @@ impl Table {
             return;
         }
         let entered = Entered {
+            lowest_feed: sight.feed,
             sight,
             unanimous: true,
             one_feed: true,
@@ -227,12 +232,11 @@ impl Table {
         })
     }
 
-    /// Why the words of a block under compensation stay, if they do: what they leave in force
-    /// cannot be put right in the next block.
+    /// Why a block under compensation stays: the next one cannot put right what it leaves.
     pub(super) fn fixed_under_compensation(&self, entry: &Entry) -> Option<&'static str> {
         let free = !entry.facts.compensated || self.in_order;
         let fixed = !free && self.around_within(entry.key).is_none();
-        fixed.then_some(UNDER_COMPENSATION)
+        (fixed || self.within.is_mixed(entry.key)).then_some(UNDER_COMPENSATION)
     }
 
     fn around_within(&self, line: LineKey) -> Option<FeedAround> {
@@ -424,6 +428,12 @@ impl Table {
                 continue;
             };
             decision.around = FeedAround::LeftAfter;
+            // One F for all of its runs: none is faster for it.
+            let lowest = entered.lowest_feed.filter(|_| !decision.change.as_feed);
+            if let (Some(feed), Some(lowest)) = (&mut decision.change.feed, lowest) {
+                *feed =
+                    feed.min(lowest.value * lowest.mm_per_unit / decision.facts.feed_mm_per_unit);
+            }
             if decision.change.feed.is_some() {
                 found.extend(self.left_feeds.users(*line));
             }

@@ -35,18 +35,21 @@ impl Within {
     /// Takes note of a run of a line; `before` is the state before it.
     pub(super) fn run(&mut self, line: LineKey, entry: &Entry, before: &Mark) {
         let facts = &entry.facts;
-        let counts = facts.executed
-            && (!facts.compensated
-                || facts.uses_motion
-                || facts.feed_word.is_some()
-                || looks_at_state(entry));
+        let counts = !facts.compensated
+            || facts.uses_motion
+            || facts.feed_word.is_some()
+            || looks_at_state(entry);
+        let counts = facts.executed && counts || facts.reads_state;
         if !counts {
             return;
         }
-        if let Some(last) = self.last.take() {
+        let last = self.last.take();
+        let follows = last.is_some();
+        if let Some(last) = last {
             self.next.entry(last).or_default().insert(line);
         }
-        if !facts.compensated {
+        // What only works values out stands among them.
+        if !facts.compensated && (facts.executed || !follows) {
             self.outside.insert(line);
             return;
         }
@@ -78,6 +81,11 @@ impl Within {
         self.last = None;
     }
 
+    /// Whether a line is under compensation in some of its runs and not in others.
+    pub(super) fn is_mixed(&self, line: LineKey) -> bool {
+        self.lines.contains_key(&line) && self.outside.contains(&line)
+    }
+
     /// How the words of a line may be changed; `None`: not at all. `writable` says of a line
     /// whether it stands in a text that is written.
     pub(super) fn around(
@@ -86,7 +94,8 @@ impl Within {
         writable: impl Fn(LineKey) -> bool,
     ) -> Option<FeedAround> {
         let next = || self.next.get(&line).into_iter().flatten();
-        if next().all(|line| self.outside.contains(line)) {
+        let outside = |line: &LineKey| !self.lines.contains_key(line);
+        if next().all(outside) {
             return Some(FeedAround::Within {
                 known_before: true,
                 put_back: true,
@@ -111,10 +120,13 @@ impl Within {
     }
 }
 
-/// Whether a block shows what is in force.
+/// Whether a block shows what is in force, or switches compensation: what is put back after
+/// that stands outside.
 fn looks_at_state(entry: &Entry) -> bool {
     let facts = &entry.facts;
-    facts.boundary
+    let mut words = entry.block.words.iter();
+    words.any(|word| word.letter == b'G' && (40.0..43.0).contains(&word.value))
+        || facts.boundary
         || facts.selects_tool
         || facts.stop_word.is_some()
         || facts.reads_state

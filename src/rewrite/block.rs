@@ -1,13 +1,12 @@
 //! One block at a time: its edits, and the lines before it.
 
+mod feed_mode;
 mod label;
 mod pieces;
 mod tool_words;
 mod view;
 mod within;
 mod words;
-
-use std::fmt::Write as _;
 
 pub use pieces::PieceWords;
 pub use view::{BlockView, FeedAround};
@@ -20,7 +19,7 @@ use super::rapid_mark::Comment;
 use super::state::{Mark, Written, motion_word};
 use super::turned::{InForce, Turned};
 use crate::edit::{Edit, apply};
-use crate::interpret::{FeedMode, KnobState, Motion, ToolWords};
+use crate::interpret::{KnobState, Motion, ToolWords};
 use crate::machine::{Machine, ToolChange};
 use crate::source::split_line_end;
 use crate::syntax::Word;
@@ -50,8 +49,7 @@ pub struct Rewriter<'m> {
     stopped: bool,
     /// The words in whose place exact stop is in force.
     blend_words: Option<String>,
-    /// G1 was written where no motion word was in force: it holds for all blocks up to the
-    /// first motion word of the program.
+    /// G1 was written where no motion word was in force: it holds up to the first one.
     feeds_from_here: bool,
     /// Marks feeds that stand for rapids.
     comment: Option<Comment>,
@@ -60,6 +58,8 @@ pub struct Rewriter<'m> {
     /// The word that lets F mean again what it means in the original, times ten, where a block
     /// under compensation has left another meaning in force.
     feed_mode_back: Option<u16>,
+    /// The next block states all that is in force in the original.
+    states: bool,
     /// Lines changed or inserted so far.
     pub edited_lines: u64,
 }
@@ -89,6 +89,7 @@ impl<'m> Rewriter<'m> {
             comment: None,
             compensated: false,
             feed_mode_back: None,
+            states: false,
             edited_lines: 0,
         }
     }
@@ -117,7 +118,8 @@ impl<'m> Rewriter<'m> {
         let facts = view.facts;
         self.edits.clear();
         if self.compensated && !facts.executed {
-            return self.apply_edits(view.text, out);
+            let fine = !facts.reads_state || self.stands_as_before(view);
+            return fine && self.apply_edits(view.text, out);
         }
         if std::mem::replace(&mut self.compensated, facts.compensated) && facts.compensated {
             return self.write_within(view, out);
@@ -244,41 +246,6 @@ impl<'m> Rewriter<'m> {
         }
     }
 
-    /// A line that lets F be by the minute, where it is not for others. True where it is needed.
-    fn begin_apart(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
-        let apart = apart(view) && !view.facts.compensated;
-        if apart {
-            self.restore(view.before, view.knobs, out);
-            let [per_minute, _] = view.after.per_minute_and_back();
-            self.insert_line(&g_word(per_minute), out);
-            self.written.feed = None;
-        }
-        apart
-    }
-
-    /// A line that puts back what was in force, after a feed per minute among others.
-    fn back_to_feed_mode(&mut self, original: &Mark, out: &mut Vec<u8>) {
-        self.complete_line(out);
-        let mut words = String::new();
-        if let Some(digit) = original.motion.digit() {
-            let _ = write!(words, "G{} ", char::from(digit));
-        }
-        let [_, back] = original.per_minute_and_back();
-        words.push_str(&g_word(back));
-        // Under an inverse time each block has its own F.
-        let feed = original.feed.as_ref();
-        let feed = feed.filter(|_| original.feed_mode == FeedMode::PerRevolution);
-        if let Some(feed) = feed {
-            let _ = write!(words, " F{}", feed_again(feed, original.mm_per_unit));
-        }
-        self.insert_line(&words, out);
-        self.written = Written {
-            motion: original.motion,
-            feed: original.feed_value(),
-        };
-        self.stopped = false;
-    }
-
     /// Copies a block that moves and changes nothing else of the state `mark`;
     /// false, and nothing is written, where the written program is in another
     /// state. `rests`: see [`BlockView`].
@@ -327,8 +294,8 @@ impl<'m> Rewriter<'m> {
         };
         // Whatever the line above ends with, another may come before this one.
         self.stopped = false;
-        let within = matches!(around, FeedAround::Within { .. });
-        self.compensated = within;
+        self.compensated = matches!(around, FeedAround::Within { .. });
+        let within = self.compensated;
         if within && !known {
             self.state_within(view.before);
         }
@@ -349,7 +316,7 @@ impl<'m> Rewriter<'m> {
             self.finish(&after, view.knobs, out);
         }
         self.skip.clear();
-        self.feed_mode_back = None;
+        (self.feed_mode_back, self.states) = (None, false);
         written
     }
 
@@ -475,17 +442,6 @@ impl<'m> Rewriter<'m> {
         out.extend_from_slice(&self.line_end);
         self.edited_lines += 1;
     }
-}
-
-/// Whether the F of a block is by the minute where the others are by the revolution or an
-/// inverse time.
-fn apart(view: &BlockView<'_>) -> bool {
-    view.change.as_feed && !view.after.per_minute()
-}
-
-/// A G word by its number, times ten.
-fn g_word(number: u16) -> String {
-    format!("G{}", f64::from(number) / 10.0)
 }
 
 /// The first word of a block that stays in it.

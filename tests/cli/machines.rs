@@ -96,7 +96,7 @@ fn settings_that_cannot_be_read() {
 #[test]
 fn tool_tables_and_parameter_files() {
     let shop = Shop::new();
-    shop.put("offset.ngc", "G43 H2\nG55 G0 X0 Z0\n");
+    shop.put("offset.ngc", "G55 G43 H2 G0 X0 Z0\n");
     shop.put("tools.tbl", "T2 P1 Z12.5 ;mill\n");
     shop.put("kept.var", "5241\t30.000000\n5243\t1.000000\n");
     let options = [

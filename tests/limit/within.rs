@@ -195,6 +195,11 @@ fn what_stays() {
             "G41 D1 G1 X40 Y0 F500\nY50\nG0 X400 Y-300\nG40 Y0\nM30\n",
             "without its stop the corner would be rounded",
         ),
+        (
+            "siemens",
+            "D1\nG41 G0 X60 Y20\nX200\nY-300\nG40 G1 X0 Y0 F500\nM30\n",
+            "it goes round a corner under compensation",
+        ),
         // No word stops a block there.
         (
             "linuxcnc",
@@ -216,6 +221,42 @@ fn what_stays() {
     let program = format!("{begin}G41 D1 G1 X40 Y0 F30000\n#1=#4109\nY300 F500\nG40 X0\nM30\n");
     let (code, _, errors) = run(&shop("fanuc", 250.0), &program, "");
     assert_eq!(code, 1, "{errors}");
+}
+
+/// What stands in lines around a block would stand between others in the runs under compensation.
+#[test]
+fn lines_that_run_with_compensation_and_without() {
+    let program = "G21 G17 G90 G94\nG0 X5. Y5.\nT1\n#1=0\nWHILE [#1 LT 2] DO1\nIF [#1 EQ 0] GOTO 10\n\
+                   G41 D1 G1 X40. Y0 F500\nN10 G1 X60. F20000\nX300.\nX310. F500\nG40 X320. Y-9.\n\
+                   X5. Y5.\n#1=#1+1\nEND1\nM30\n";
+    let (code, _, errors) = run(&shop("fanuc", 400.0), program, "");
+    assert_eq!(code, 1, "{errors}");
+    assert!(
+        errors.contains("it is under cutter compensation in a program"),
+        "{errors}"
+    );
+    assert!(!errors.contains("fault of gwatt"), "{errors}");
+    // G40 by itself belongs to the stretch.
+    let program = "G21 G17 G90 G94\nG0 X5. Y5.\nT1\n#1=0\nWHILE [#1 LT 2] DO1\nG41 D1 G1 X40. Y0 \
+                   F500\nX300. F20000\nM8\nG40\nX5. Y5. F500\n#1=#1+1\nEND1\nM30\n";
+    assert_snapshot!(limited(&shop("fanuc", 400.0), program, ""), @"");
+}
+
+/// Where the program stops, and at its end, all is as in the original.
+#[test]
+fn stops_under_compensation() {
+    let program = "G21 G99 G54 T0300\nG97 S500 M3\nG1 X64. Z3. F0.2\nG42 X60. Z2.\nZ-20.\nG0 X150.\n\
+                   M1\nG1 Z-100.\nG0 X160.\nM30\n";
+    let shop = Shop::lathe("fanuc-lathe", 300.0, "");
+    assert_snapshot!(limited(&shop, program, ""), @"");
+}
+
+/// One F for a line that runs under two: the lower one of the program's own is not exceeded.
+#[test]
+fn feeds_that_differ_between_runs() {
+    let program = "G21 G17 G90 G94\nF20000\nM98 P2\nX0\nF2000\nM98 P2\nM30\nO2\nG1 X300.\nM99\n";
+    let text = limited(&shop("fanuc", 200.0), program, "");
+    assert!(text.contains("G1 X300. F2000\n"), "{text}");
 }
 
 /// The finishing cycle gets its contour with the words for compensation, where it ends in it or

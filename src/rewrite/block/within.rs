@@ -1,7 +1,8 @@
 //! Blocks under compensation: the control looks from each to the next, so that no line comes
 //! between them. What a block needs, and what is put back after another, stands in it.
 
-use super::{BlockView, Rewriter, apart, first_word, g_word};
+use super::feed_mode::{apart, g_word};
+use super::{BlockView, Rewriter, first_word};
 use crate::edit::Edit;
 use crate::interpret::{FeedMode, Motion};
 use crate::rewrite::number::{Style, feed_again};
@@ -20,7 +21,8 @@ impl Rewriter<'_> {
             || facts.turns_knob
             || facts.reads_state
             || counts && takes_no_words(view);
-        if looked_at && !self.stands_as_before(view) {
+        let states = self.states && !facts.uses_motion;
+        if (looked_at || states) && !self.stands_as_before(view) {
             return self.put_right_within(view) && self.end_within(view, out);
         }
         if view.change.exact_stop || view.change.stop {
@@ -43,6 +45,7 @@ impl Rewriter<'_> {
         };
         let [_, back] = original.per_minute_and_back();
         self.feed_mode_back = (!original.per_minute()).then_some(back);
+        self.states = true;
     }
 
     fn end_within(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
@@ -52,7 +55,7 @@ impl Rewriter<'_> {
     }
 
     /// Whether the written program has in force what the original has before a block.
-    fn stands_as_before(&self, view: &BlockView<'_>) -> bool {
+    pub(super) fn stands_as_before(&self, view: &BlockView<'_>) -> bool {
         let feeds = !view.before.per_minute() || self.written.feed == view.before.feed_value();
         feeds && self.written.motion == view.before.motion && self.feed_mode_back.is_none()
     }
@@ -101,7 +104,8 @@ impl Rewriter<'_> {
     /// meaning in force and this one needs none of its own.
     fn feed_mode_within(&mut self, view: &BlockView<'_>) {
         let facts = view.facts;
-        let needed = facts.uses_motion || facts.feed_word.is_some() || facts.boundary;
+        let shows = facts.boundary || facts.stop_word.is_some() || facts.selects_tool;
+        let needed = facts.uses_motion || facts.feed_word.is_some() || shows || self.states;
         if apart(view) || !needed {
             return;
         }
@@ -124,17 +128,10 @@ impl Rewriter<'_> {
         self.written.feed = view.after.feed_value();
     }
 
-    /// States what is in force in a block that does not count on it, where it is not known
-    /// what a block before has left.
+    /// States the F in force in a block that does not count on it, where it is not known what a
+    /// block before has left.
     fn rest_within(&mut self, view: &BlockView<'_>) {
         let facts = view.facts;
-        if self.written.motion == Motion::None
-            && facts.feed_word.is_some()
-            && let Some(word) = motion_word(view.after.motion)
-        {
-            self.put_first(view, &word);
-            self.written.motion = view.after.motion;
-        }
         if self.written.feed.is_none()
             && facts.uses_motion
             && facts.feed_word.is_none()

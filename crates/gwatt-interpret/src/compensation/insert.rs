@@ -13,6 +13,8 @@ use crate::arc::{self, Ends, Slack};
 use crate::vector::{Vector, along, cross, dot, left, scale, sub, unit};
 use gwatt_motion::{Arc, Move};
 
+/// Why such blocks stay as they are: the speed of a corner is that of the block before or after.
+const FIXED: &str = "a corner is cut or rounded there";
 /// Directions that differ by less make no corner, rad.
 const STRAIGHT_RAD: f64 = 1e-6;
 /// Ends may be passed by so much, mm and rad: rounding.

@@ -1,6 +1,6 @@
 //! The words of chamfers and rounded corners.
 
-use super::{Corner, Corners, Insert, TEXT_MAX};
+use super::{Corner, Corners, FIXED, Insert, TEXT_MAX};
 use crate::code::GCode;
 use crate::compensation::fault::Fault;
 use crate::compensation::hold::place;
@@ -25,6 +25,7 @@ impl Control<'_> {
         if ask.is_none() && corners.waits.is_none() {
             return;
         }
+        run.facts.fixed = Some(FIXED);
         run.facts.compensated = true;
         if run.report.diagnostics.errors != errors {
             return;
