@@ -9,6 +9,7 @@ mod random;
 use std::fmt::Write as _;
 use std::io::Cursor;
 
+use gwatt::diagnostic::Severity;
 use gwatt::interpret::ParameterFile;
 use gwatt::machine::Machine;
 use gwatt::pipeline::{Failure, Limits, Options, moves};
@@ -53,7 +54,9 @@ fn run(controller: &str, program: &str, options: &Options) -> Result<Vec<(f64, f
     match result {
         Ok(_) => Ok(ends),
         Err(Failure::Refused { diagnostics, .. }) => {
-            let found = &diagnostics[0];
+            let mut found = diagnostics.iter();
+            let found = found.find(|found| found.severity == Severity::Error);
+            let found = found.expect("an error");
             Err(format!("{} {}: {}", found.line, found.rule, found.message))
         }
         Err(other) => panic!("{other}"),

@@ -335,8 +335,7 @@ impl Table {
         }
     }
 
-    /// Where one line of a program before any motion word is written as a feed, all of them
-    /// are: G1 is in force for whichever comes next.
+    /// Where one line before any motion word is written as a feed, all are: G1 is in force then.
     pub(super) fn spread_word(&mut self, machine: &Machine) {
         let feeds = |(key, entered): (&LineKey, &Entered)| {
             let decision = entered.decision.as_deref()?;
@@ -376,7 +375,7 @@ impl Table {
         };
     }
 
-    /// Where one line that counts on no F gets one, all of them get it, whichever comes next.
+    /// Where one line that counts on no F gets one, all of them get it.
     pub(super) fn spread_feed(&mut self) {
         let Some(first) = self.first_feed else { return };
         for entered in self.lines.values_mut() {
@@ -403,7 +402,7 @@ impl Table {
         Stopping::of(&self.stops_before, self.stopping_lines(machine))
     }
 
-    /// Where a rapid is written as a feed, the lines that move before it get their word.
+    /// Lines that move before a rapid that is written as a feed get their word.
     pub(super) fn spread_stops(&mut self, machine: &Machine) {
         let found: Vec<_> = self
             .stopping_lines(machine)
@@ -428,8 +427,9 @@ impl Table {
                 continue;
             };
             decision.around = FeedAround::LeftAfter;
-            // One F for all of its runs: none is faster for it.
-            let lowest = entered.lowest_feed.filter(|_| !decision.change.as_feed);
+            // One F for all runs: none is faster for it.
+            let one = !decision.change.as_feed && decision.facts.feed_word.is_none();
+            let lowest = entered.lowest_feed.filter(|_| one);
             if let (Some(feed), Some(lowest)) = (&mut decision.change.feed, lowest) {
                 *feed =
                     feed.min(lowest.value * lowest.mm_per_unit / decision.facts.feed_mm_per_unit);

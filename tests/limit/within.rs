@@ -229,7 +229,7 @@ fn lines_that_run_with_compensation_and_without() {
     let program = "G21 G17 G90 G94\nG0 X5. Y5.\nT1\n#1=0\nWHILE [#1 LT 2] DO1\nIF [#1 EQ 0] GOTO 10\n\
                    G41 D1 G1 X40. Y0 F500\nN10 G1 X60. F20000\nX300.\nX310. F500\nG40 X320. Y-9.\n\
                    X5. Y5.\n#1=#1+1\nEND1\nM30\n";
-    let (code, _, errors) = run(&shop("fanuc", 400.0), program, "");
+    let (code, _, errors) = run(&shop("fanuc", 300.0), program, "");
     assert_eq!(code, 1, "{errors}");
     assert!(
         errors.contains("it is under cutter compensation in a program"),
@@ -239,7 +239,7 @@ fn lines_that_run_with_compensation_and_without() {
     // G40 by itself belongs to the stretch.
     let program = "G21 G17 G90 G94\nG0 X5. Y5.\nT1\n#1=0\nWHILE [#1 LT 2] DO1\nG41 D1 G1 X40. Y0 \
                    F500\nX300. F20000\nM8\nG40\nX5. Y5. F500\n#1=#1+1\nEND1\nM30\n";
-    assert_snapshot!(limited(&shop("fanuc", 400.0), program, ""), @"");
+    assert_snapshot!(limited(&shop("fanuc", 300.0), program, ""), @"");
 }
 
 /// Where the program stops, and at its end, all is as in the original.
@@ -248,7 +248,18 @@ fn stops_under_compensation() {
     let program = "G21 G99 G54 T0300\nG97 S500 M3\nG1 X64. Z3. F0.2\nG42 X60. Z2.\nZ-20.\nG0 X150.\n\
                    M1\nG1 Z-100.\nG0 X160.\nM30\n";
     let shop = Shop::lathe("fanuc-lathe", 300.0, "");
-    assert_snapshot!(limited(&shop, program, ""), @"");
+    assert_snapshot!(limited(&shop, program, ""), @r"
+    G21 G99 G54 T0300
+    G97 S500 M3
+    G1 X64. Z3. F0.2
+    G42 X60. Z2.
+    G9 Z-20.
+    G9 G98 G1 X150. F14999.
+    M1 G99 F0.2 G0
+    G1 Z-100.
+    G0 X160.
+    M30
+    ");
 }
 
 /// One F for a line that runs under two: the lower one of the program's own is not exceeded.
