@@ -239,7 +239,23 @@ fn lines_that_run_with_compensation_and_without() {
     // G40 by itself belongs to the stretch.
     let program = "G21 G17 G90 G94\nG0 X5. Y5.\nT1\n#1=0\nWHILE [#1 LT 2] DO1\nG41 D1 G1 X40. Y0 \
                    F500\nX300. F20000\nM8\nG40\nX5. Y5. F500\n#1=#1+1\nEND1\nM30\n";
-    assert_snapshot!(limited(&shop("fanuc", 300.0), program, ""), @"");
+    assert_snapshot!(limited(&shop("fanuc", 300.0), program, ""), @r"
+    G21 G17 G90 G94
+    G4 P1
+    G9 G1 X5. Y5. F9697.4
+    G0
+    T1
+    #1=0
+    WHILE [#1 LT 2] DO1
+    G41 D1 G1 X40. Y0 F342.5
+    G1 X300. F13700
+    M8
+    G1 G40 F20000
+    X5. Y5. F500
+    #1=#1+1
+    END1
+    M30
+    ");
 }
 
 /// Where the program stops, and at its end, all is as in the original.
