@@ -28,6 +28,7 @@ mod plain_moves;
 mod plan;
 mod jerk;
 mod curve;
+mod decimal_points;
 mod drives;
 mod jerk_limits;
 mod phases;

@@ -98,7 +98,7 @@ impl Control<'_> {
         } else {
             self.program_datum(axis)
         };
-        let apart = self.position.is_apart(axis, datum);
+        let apart = self.position.is_apart(axis, datum) || self.position.points.apart();
         self.position.datums.place(axis, datum);
         apart
     }
@@ -127,7 +127,9 @@ impl Control<'_> {
             let moves_along = !machine_coordinates
                 && !named.contains(axis)
                 && named.iter().any(|by| frame.depends(axis, by));
-            if (absolute.contains(axis) || moves_along) && self.places(axis, machine_coordinates) {
+            let by_points = named.contains(axis) && self.position.points.apart();
+            let placed = absolute.contains(axis) || moves_along;
+            if placed && self.places(axis, machine_coordinates) || by_points {
                 apart.insert(axis);
             }
         }

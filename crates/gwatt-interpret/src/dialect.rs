@@ -5,7 +5,10 @@
 //! Fanuc B-63944EN and B-63604EN ("Decimal Point Programming", "G Code List in
 //! T Series", "Skip Function (G31)"), Haas mill and lathe operator's manuals.
 
+mod point_kinds;
 mod words;
+
+pub(super) use point_kinds::PointKinds;
 
 use super::code::{GCode, Motion};
 use super::turning::{BOX, FACE, THREAD, THREAD_BOX};

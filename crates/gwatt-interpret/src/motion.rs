@@ -166,7 +166,8 @@ impl Control<'_> {
             } else {
                 end[axis] + value
             };
-            if (absolute || machine_coordinates) && self.places(axis, machine_coordinates) {
+            let placed = absolute || machine_coordinates;
+            if placed && self.places(axis, machine_coordinates) || self.position.points.apart() {
                 unknown.insert(axis);
             }
             if end[axis].abs() > POSITION_MAX_MM {

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::datum::Datums;
+use super::dialect::PointKinds;
 use super::flow::limits::Limits;
 use super::frame::Frame;
 use super::given::GivenVariable;
@@ -139,6 +140,8 @@ pub(super) struct Position {
     pub(super) adrift: AxisSet,
     /// What the places rest on.
     pub(super) datums: Datums,
+    /// By which numbers they were stated.
+    pub(super) points: PointKinds,
     /// Axes whose places do not rest on what coordinates of the program rest on, as of the
     /// last block that is not plain.
     pub(super) apart: AxisSet,
@@ -158,6 +161,7 @@ impl Position {
             offsets,
             adrift: AxisSet::default(),
             datums: Datums::default(),
+            points: PointKinds::default(),
             apart: AxisSet((1 << AXES) - 1),
         }
     }

@@ -85,7 +85,8 @@ impl Control<'_> {
                 note_machine_zero(span, run);
                 Datum::Reference(point)
             };
-            if self.position.is_apart(axis, datum) {
+            let by_points = self.position.points.return_to_machine(axis);
+            if self.position.is_apart(axis, datum) || by_points {
                 apart.insert(axis);
             }
             self.position.datums.place(axis, datum);

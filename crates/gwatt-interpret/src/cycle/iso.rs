@@ -252,6 +252,12 @@ impl Control<'_> {
         Some([q.abs() * unit, 0.0])
     }
 
+    /// Whether the axis goes further than R at the end of a hole.
+    fn retracts(&self, hole: &Hole) -> bool {
+        let unsure = self.position.points.apart() && self.special.to_initial;
+        hole.clear_mm != hole.r_mm || unsure
+    }
+
     /// The moves at one place but those of G87; false when they are too many.
     fn iso_hole(&mut self, hole: &Hole, place: &mut AxisValues, run: &mut Run<'_, '_>) -> bool {
         use MoveKind::{Feed, Rapid, Tap};
@@ -261,7 +267,7 @@ impl Control<'_> {
             control.part(run, kind, place);
         };
         let turning = self.special.spindle;
-        if self.position.at[normal] != hole.r_mm {
+        if self.position.at[normal] != hole.r_mm || self.position.points.apart() {
             to(self, run, Rapid, hole.r_mm);
         }
         match hole.number {
@@ -282,7 +288,7 @@ impl Control<'_> {
                 run.spin(into.reversed());
                 to(self, run, Tap, hole.r_mm);
                 run.spin(into);
-                if hole.clear_mm != hole.r_mm {
+                if self.retracts(hole) {
                     to(self, run, Rapid, hole.clear_mm);
                 }
             }
@@ -290,7 +296,7 @@ impl Control<'_> {
                 to(self, run, Feed, hole.bottom_mm);
                 self.iso_wait(hole, run);
                 to(self, run, Feed, hole.r_mm);
-                if hole.clear_mm != hole.r_mm {
+                if self.retracts(hole) {
                     to(self, run, Rapid, hole.clear_mm);
                 }
             }

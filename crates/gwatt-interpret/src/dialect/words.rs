@@ -23,15 +23,22 @@ impl Control<'_> {
     pub(crate) fn adapt_words(&mut self, run: &mut Run<'_, '_>) {
         let groups = run.words.groups;
         run.words.incremental = 0;
+        self.position.points.begin_block();
         if groups & (GCode::Dwell.group() | GCode::MacroCall.group()) != 0 {
             return;
         }
         if let Some(point) = self.dialect().point {
             self.points(point, run);
         }
-        if self.dialect().lathe != Some(Lathe::A) {
-            return;
+        if self.dialect().lathe == Some(Lathe::A) {
+            self.incremental_words(run);
         }
+        self.follow_points(run);
+    }
+
+    /// Words of system A that are incremental become those of their axes.
+    fn incremental_words(&self, run: &mut Run<'_, '_>) {
+        let groups = run.words.groups;
         for (letter, axis) in INCREMENTAL {
             if !run.words.has(letter)
                 || letter == b'H' && self.machine.axes[5].is_none()
@@ -72,19 +79,6 @@ impl Control<'_> {
             _ => None,
         });
         let inch = inch.unwrap_or(self.modal.mm_per_unit == MM_PER_INCH);
-        let cycle = run
-            .words
-            .g
-            .iter()
-            .any(|(code, ..)| matches!(code, GCode::Turning(_)));
-        // K of a drilling cycle says how often, unless its shift has that direction.
-        let begins = run.words.g.iter().find_map(|(code, ..)| match code {
-            GCode::Motion(Motion::Special(number)) => Some(*number),
-            _ => None,
-        });
-        let number = begins.unwrap_or(self.special.active);
-        let shifts = matches!(number, 760 | 870) && self.modal.plane[2] != 2;
-        let counts = self.dialect().lathe.is_none() && number != 0 && !shifts;
         let mut codes = run.words.g.iter();
         let ignored = !run.words.g.is_empty() && codes.all(|(code, ..)| *code == GCode::Ignored);
         if ignored && !run.words.axes().any(|(axis, _)| axis != EXTRUDER) {
@@ -93,9 +87,7 @@ impl Control<'_> {
         }
         for word in &run.block.words {
             if !LENGTHS.contains(&word.letter)
-                || word.letter == b'K' && counts
-                // A count, an angle.
-                || cycle && (word.letter == b'A' || word.letter == b'R' && point == Point::Calculator)
+                || self.counts(word.letter, run)
                 || word.value == 0.0
                 || has_point(word.number.of(run.report.text))
             {
@@ -111,6 +103,27 @@ impl Control<'_> {
                 _ => LEAST_MM,
             };
             run.words.scale(word.letter, least);
+        }
+    }
+
+    /// Whether a word that is a length elsewhere is a count or an angle in this block.
+    pub(super) fn counts(&self, letter: u8, run: &Run<'_, '_>) -> bool {
+        let mut codes = run.words.g.iter();
+        match letter {
+            b'A' | b'R' => {
+                let turns = codes.any(|(code, ..)| matches!(code, GCode::Turning(_)));
+                turns && (letter == b'A' || self.dialect().point == Some(Point::Calculator))
+            }
+            // K of a drilling cycle says how often, unless its shift has that direction.
+            b'K' if self.dialect().lathe.is_none() => {
+                let begins = codes.find_map(|(code, ..)| match code {
+                    GCode::Motion(Motion::Special(number)) => Some(*number),
+                    _ => None,
+                });
+                let number = begins.unwrap_or(self.special.active);
+                number != 0 && !(matches!(number, 760 | 870) && self.modal.plane[2] != 2)
+            }
+            _ => false,
         }
     }
 
@@ -166,14 +179,15 @@ impl Control<'_> {
         Some(word.value * least * unit)
     }
 
-    /// Notes a length that has no point, which is not scaled.
-    fn note_point(&self, word: &Word, report: &mut Report<'_, '_>) {
-        if self.dialect().point == Some(Point::Calculator)
+    /// Notes a length that has no point, which is not scaled; whether it is one.
+    fn note_point(&self, word: &Word, report: &mut Report<'_, '_>) -> bool {
+        let pointless = self.dialect().point == Some(Point::Calculator)
             && word.value != 0.0
-            && !has_point(word.number.of(report.text))
-        {
+            && !has_point(word.number.of(report.text));
+        if pointless {
             self.note_no_point(word.span, report);
         }
+        pointless
     }
 
     /// `,C` or `,R` of the present block.
@@ -202,10 +216,10 @@ impl Control<'_> {
 
     /// The value of an argument of a macro call (B-63944EN, "Macro Call": the
     /// decimal places of each address).
-    pub(crate) fn argument(&self, word: &Word, report: &mut Report<'_, '_>) -> f64 {
+    pub(crate) fn argument(&mut self, word: &Word, report: &mut Report<'_, '_>) -> f64 {
         let length = LENGTHS.contains(&word.letter) || word.letter == b'Q';
-        if length {
-            self.note_point(word, report);
+        if length && self.note_point(word, report) {
+            self.position.points.give_argument();
         }
         let scaled = self.dialect().point == Some(Point::LeastIncrement)
             && length

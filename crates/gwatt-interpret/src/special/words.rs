@@ -160,8 +160,17 @@ impl Control<'_> {
     /// A part of a special motion that moves to `end`.
     pub(crate) fn part(&mut self, run: &mut Run<'_, '_>, kind: MoveKind, end: &AxisValues) {
         let mut apart = AxisSet::default();
+        let [first, second, normal] = self.modal.plane;
+        let lathe = self.dialect().lathe.is_some();
         for axis in self.machine.axis_set.iter() {
-            if end[axis] != self.position.at[axis] && self.places_in_cycle(axis) {
+            let of_cycle = if lathe {
+                axis == first || axis == second
+            } else {
+                axis == normal
+            };
+            let unsure = of_cycle && self.position.points.apart();
+            let goes = end[axis] != self.position.at[axis] || unsure;
+            if goes && self.places_in_cycle(axis) {
                 apart.insert(axis);
             }
         }
