@@ -14,8 +14,8 @@ use crate::rows::Rows;
 
 /// A mill or a lathe that knows its places; `more` stands in `[language]`.
 fn machine(controller: &str, more: &str) -> Machine {
-    let offsets =
-        "[path]\nrapid = \"linear\"\n[offsets]\nG54 = { X = -20, Z = -30 }\nG55 = { X = -25 }\n";
+    // With exact stops: corners are no matter here.
+    let offsets = "[path]\nmode = \"exact-stop\"\nrapid = \"linear\"\n[offsets]\nG54 = { X = -20, Z = -30 }\nG55 = { X = -25 }\n";
     let text = format!("{offsets}[language]\nunits = \"mm\"\n{more}\n");
     machine_of(
         controller,

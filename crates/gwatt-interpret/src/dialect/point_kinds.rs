@@ -40,11 +40,6 @@ impl Kind {
     fn is_pointless(self) -> bool {
         matches!(self, Self::Pointless | Self::Both)
     }
-
-    /// The same place, seen from another origin that is known.
-    fn from_elsewhere(self) -> Self {
-        self.with(Self::Pointed)
-    }
 }
 
 /// The kinds of the places of all axes.
@@ -106,6 +101,17 @@ impl PointKinds {
         }
     }
 
+    /// The place of an axis, seen from another origin.
+    fn seen_from_elsewhere(&self, axis: usize) -> Kind {
+        // The origins may be apart by a number without a point.
+        let between = if self.loose.contains(axis) {
+            Kind::Both
+        } else {
+            Kind::Pointed
+        };
+        self.places[axis].with(between)
+    }
+
     /// Where an axis stands is called otherwise: by this number, or further on by it.
     fn rename(&mut self, axis: usize, kind: Kind, further: bool) {
         let from = self.places[axis];
@@ -113,7 +119,7 @@ impl PointKinds {
             self.loose.insert(axis);
         }
         self.places[axis] = if further {
-            from.from_elsewhere().with(kind)
+            self.seen_from_elsewhere(axis).with(kind)
         } else {
             kind
         };
@@ -261,9 +267,14 @@ impl Control<'_> {
         let length = |code: &GCode| matches!(code, GCode::ToolLength(_));
         let along = !self.tools.unknown() && run.words.g.iter().any(|(code, ..)| length(code));
         let normal = self.modal.plane[2];
-        let places = self.position.points.places.iter_mut().enumerate();
-        for (_, kind) in places.filter(|(axis, _)| all || along && *axis == normal) {
-            *kind = kind.from_elsewhere();
+        let points = &mut self.position.points;
+        for axis in self
+            .machine
+            .axis_set
+            .iter()
+            .filter(|axis| all || along && *axis == normal)
+        {
+            points.places[axis] = points.seen_from_elsewhere(axis);
         }
     }
 }
