@@ -45,6 +45,8 @@ impl Kind {
 /// The kinds of the places of all axes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct PointKinds {
+    /// The program has had a number without a point. Before, there is one kind alone.
+    begun: bool,
     places: [Kind; AXES],
     /// Axes whose origin was set by numbers without a point.
     loose: AxisSet,
@@ -68,8 +70,17 @@ impl PointKinds {
         self.apart = false;
     }
 
+    /// There is a number without a point.
+    pub(super) fn begin(&mut self, in_cycle: bool) {
+        if !self.begun && in_cycle {
+            self.levels = Kind::Pointed;
+        }
+        self.begun = true;
+    }
+
     /// A macro is given a number without a point.
     pub(super) fn give_argument(&mut self) {
+        self.begun = true;
         self.argument = true;
     }
 
@@ -161,7 +172,8 @@ enum Use {
 impl Control<'_> {
     /// Follows the kinds through a block whose words are sorted.
     pub(super) fn follow_points(&mut self, run: &mut Run<'_, '_>) {
-        if self.dialect().point != Some(Point::Calculator) || self.dialect().point_is_known {
+        let known = self.dialect().point_is_known;
+        if !self.position.points.begun || known || self.dialect().point != Some(Point::Calculator) {
             return;
         }
         let usage = self.usage(run);

@@ -27,8 +27,11 @@ impl Control<'_> {
         if groups & (GCode::Dwell.group() | GCode::MacroCall.group()) != 0 {
             return;
         }
-        if let Some(point) = self.dialect().point {
-            self.points(point, run);
+        if let Some(point) = self.dialect().point
+            && self.points(point, run)
+        {
+            let in_cycle = self.special.active != 0;
+            self.position.points.begin(in_cycle);
         }
         if self.dialect().lathe == Some(Lathe::A) {
             self.incremental_words(run);
@@ -72,8 +75,8 @@ impl Control<'_> {
     }
 
     /// Numbers without a point: least increments, or a note. F is taken as it
-    /// is written, which is never less than it means.
-    fn points(&self, point: Point, run: &mut Run<'_, '_>) {
+    /// is written, which is never less than it means. Whether there is one that keeps its value.
+    fn points(&self, point: Point, run: &mut Run<'_, '_>) -> bool {
         let inch = run.words.g.iter().find_map(|(code, ..)| match code {
             GCode::Units { mm_per_unit } => Some(*mm_per_unit == MM_PER_INCH),
             _ => None,
@@ -83,7 +86,7 @@ impl Control<'_> {
         let ignored = !run.words.g.is_empty() && codes.all(|(code, ..)| *code == GCode::Ignored);
         if ignored && !run.words.axes().any(|(axis, _)| axis != EXTRUDER) {
             // R of G05.1 Q1 R5 is a level.
-            return;
+            return false;
         }
         for word in &run.block.words {
             if !LENGTHS.contains(&word.letter)
@@ -95,7 +98,7 @@ impl Control<'_> {
             }
             if point == Point::Calculator {
                 self.note_no_point(word.span, &mut run.report);
-                return;
+                return true;
             }
             let least = match word.letter {
                 b'A' | b'B' | b'C' => LEAST_DEG,
@@ -104,6 +107,7 @@ impl Control<'_> {
             };
             run.words.scale(word.letter, least);
         }
+        false
     }
 
     /// Whether a word that is a length elsewhere is a count or an angle in this block.
