@@ -124,6 +124,7 @@ fn controller() -> Controller {
             peck_clearance_mm: 1.0,
             escape_mm: None,
             groove_return_mm: None,
+            type_2_as_type_1: false,
             arc_without_center_is_line: false,
             arc_tolerance_mm: None,
             kept_variables: Vec::new(),

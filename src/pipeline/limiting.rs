@@ -9,7 +9,7 @@ use super::analyze::judge;
 use super::conclusion::holds_one_way;
 use super::derate::{aim_lower, lower_further, missed_narrowly};
 use super::executor::read_whole;
-use super::expand::{NOT_WRITTEN_OUT, OriginalRows, Traced, Way, expand, in_fixed_blocks};
+use super::expand::{NOT_WRITTEN_OUT, OriginalRows, Traced, Way, expand, explain, in_fixed_blocks};
 use super::pace::sooner;
 use super::pause::limit_waiting;
 use super::preset_notes::{NO_PRESET, NOT_SET};
@@ -233,12 +233,16 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
             let notes = &mut first.before.notes;
             notes.retain(|note| !of_presets(note));
             notes.extend(last.before.notes.drain(..).filter(of_presets));
+            explain(&mut last.reasons, notes, how.allowed);
             LimitSummary {
                 before: first.before,
                 ..last
             }
         }
-        None => first,
+        None => {
+            explain(&mut first.reasons, &first.before.notes, how.allowed);
+            first
+        }
     })
 }
 

@@ -96,7 +96,24 @@ fn refusal(failure: &Failure) -> String {
 
 /// The worst moves, one a line, with the line of the program and what helps.
 fn worst(summary: &Summary) -> String {
-    let rows: Vec<[String; 5]> = summary.worst.iter().map(unfit_row).collect();
+    // A cycle has many moves that are alike.
+    let mut alike: Vec<([String; 5], u64)> = Vec::new();
+    for unfit in &summary.worst {
+        let row = unfit_row(unfit);
+        match alike.iter_mut().find(|(known, _)| *known == row) {
+            Some((_, count)) => *count += 1,
+            None => alike.push((row, 1)),
+        }
+    }
+    let rows: Vec<[String; 5]> = alike
+        .into_iter()
+        .map(|(mut row, count)| {
+            if let Some(shown) = row.last_mut().filter(|_| count > 1) {
+                let _ = write!(shown, "  ({})", moves(count));
+            }
+            row
+        })
+        .collect();
     let mut text = aligned(&rows, "  ");
     let shown: u64 = summary.worst.iter().map(|unfit| unfit.runs).sum();
     if summary.unfit_count > shown {

@@ -101,6 +101,8 @@ pub struct Language {
     pub escape_mm: Option<f64>,
     /// See `escape_mm`.
     pub groove_return_mm: Option<f64>,
+    /// G71 and G72 go from pass to pass as in type I where the contour of type II has no pocket.
+    pub type_2_as_type_1: bool,
     /// G2 and G3 without a centre and a radius are straight lines; else they are refused.
     pub arc_without_center_is_line: bool,
     /// How far the radii of an arc at its start and end may always differ, mm: in a

@@ -12,7 +12,7 @@ mod returns;
 mod trace;
 mod turning;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
 
 use super::executor::{Executor, Line};
@@ -21,7 +21,7 @@ pub(super) use trace::{OriginalRows, Traced, WRITTEN_OUT};
 
 use crate::diagnostic::Diagnostic;
 use crate::interpret::{Interpreter, NO_POINT, Step};
-use crate::limit::{NO_KNOB, UNTOUCHABLE};
+use crate::limit::{Allowed, NO_KNOB, UNTOUCHABLE};
 use crate::machine::Machine;
 use crate::rewrite::{CycleBlock, Singles};
 use crate::source::{Span, lines, split_line_end};
@@ -102,6 +102,23 @@ pub(super) fn in_fixed_blocks(summary: &LimitSummary) -> bool {
     let mut reasons = summary.reasons.iter();
     summary.reasons.len() >= Summary::KEPT
         || reasons.any(|it| [UNTOUCHABLE, NO_KNOB].contains(&it.rule))
+}
+
+/// Says of blocks that may not be changed why their cycles stay as they are, where they may be
+/// written out, and each reason of a line once, though several moves have it.
+pub(super) fn explain(reasons: &mut Vec<Diagnostic>, notes: &[Diagnostic], allowed: Allowed) {
+    let stays = |note: &&Diagnostic| allowed.expand && note.rule == NOT_WRITTEN_OUT;
+    let why = |note: &Diagnostic| Some((note.line, note.message.split_once(": ")?.1.to_owned()));
+    let whys: BTreeMap<u64, String> = notes.iter().filter(stays).filter_map(why).collect();
+    let mut seen = BTreeSet::new();
+    reasons.retain_mut(|reason| {
+        let why = whys.get(&reason.line).filter(|_| reason.file.is_none());
+        if let Some(why) = why.filter(|_| reason.rule == UNTOUCHABLE) {
+            reason.help = Some(format!("it is not written out as single blocks: {why}"));
+        }
+        let key = (reason.file.clone(), reason.line, reason.message.clone());
+        seen.insert(key)
+    });
 }
 
 /// Writes cycles in another way where `way` asks for that of one of their lines; it holds

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::discover::Found;
 use super::rounds::Job;
 use super::{SetFailure, SetSummary};
-use crate::pipeline::expand::{NOT_WRITTEN_OUT, Way, expand, in_fixed_blocks};
+use crate::pipeline::expand::{NOT_WRITTEN_OUT, Way, expand, explain, in_fixed_blocks};
 use crate::pipeline::{Options, RestartRows, Summary};
 
 /// Limits a set as it stands, or else with the cycles of its programs written in another way.
@@ -65,6 +65,7 @@ pub(super) fn limit(
     }
     for (summary, before) in set.programs.iter_mut().zip(originals) {
         summary.before = before;
+        explain(&mut summary.reasons, &summary.before.notes, job.how.allowed);
     }
     Ok(set)
 }

@@ -27,9 +27,7 @@ impl Flow {
         let cycle = match &mut transfer {
             Some(Transfer::Contour(contour)) => {
                 let done = self.turn(contour, interpreter, block, &mut effects);
-                let facts = &mut *effects.facts;
-                facts.contour = contour.lines;
-                facts.guessed = facts.guessed.or(contour.guessed());
+                effects.facts.contour = contour.lines;
                 Some(done)
             }
             Some(Transfer::LatheCycle(cycle)) => {

@@ -10,7 +10,6 @@ use super::words::{note_parameter, turning_needs};
 use super::{X, Z};
 use crate::control::{Control, Effects, HeldBlock, Run};
 use crate::execute::Interpreter;
-use crate::facts::Facts;
 use crate::jump::Transfer;
 use crate::modal::Modal;
 use crate::position::Position;
@@ -36,17 +35,6 @@ pub(crate) struct Contour {
     pub(crate) two_axes: bool,
     /// First and last line, from 1, as soon as it has been read.
     pub(crate) lines: Option<[u64; 2]>,
-}
-
-impl Contour {
-    /// Why it is not known how the control goes about it in detail.
-    pub(crate) fn guessed(&self) -> Option<&'static str> {
-        let rough = matches!(self.cycle, ContourCycle::Rough { .. });
-        (rough && self.two_axes).then_some(
-            "the first block of the contour names X and Z (type II): how the tool goes from \
-             pass to pass is a matter of the control's parameters",
-        )
-    }
 }
 
 /// The cycles.
@@ -232,7 +220,7 @@ impl Interpreter<'_> {
             line,
             block,
             words: &mut self.words,
-            facts: &mut Facts::default(),
+            facts: effects.facts,
             steps: effects.steps,
             report: Report {
                 diagnostics: effects.diagnostics,

@@ -34,6 +34,13 @@ const BY_PARAMETER: &str = "its return, escape or chamfer is a parameter of the 
                             in the program (R), or escape_mm and groove_return_mm under \
                             [language] of the machine file";
 
+/// Why it is not known how the tool goes from pass to pass.
+const TYPE_TWO: &str = "the first block of the contour names X and Z (type II): how the tool goes \
+                        from pass to pass is a matter of the control; where the contour has no \
+                        pocket leave out the axis that does not move there, or, if the control \
+                        goes as in type I, write type_2_as_type_1 = true under [language] of the \
+                        machine file";
+
 /// What turning cycles keep from block to block.
 #[derive(Debug, Default)]
 pub(super) struct Turning {

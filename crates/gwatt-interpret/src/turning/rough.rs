@@ -9,7 +9,7 @@
 use super::contour::{Contour, ContourCycle};
 use super::piece::{Piece, TOLERANCE_MM, contour_wrong};
 use super::pockets::Stock;
-use super::{X, Z};
+use super::{TYPE_TWO, X, Z};
 use crate::control::{Control, Run};
 use gwatt_machine::AxisSet;
 use gwatt_motion::{Move, MoveKind};
@@ -56,17 +56,23 @@ impl Control<'_> {
         };
         let (rest, way_out) = way_out(approach, rest, deep);
         let Some(last) = rest.last() else { return };
-        if !way_out.is_empty() {
+        let start = self.position.at;
+        let mut corner = start;
+        corner[X] += contour.allowance[0];
+        corner[Z] += contour.allowance[1];
+        // Where it leads to the beginning of the cycle it is the cycle's own return.
+        let returns = |piece: &Piece| {
+            [X, Z]
+                .iter()
+                .all(|axis| (piece.end[*axis] - corner[*axis]).abs() < TOLERANCE_MM)
+        };
+        if !way_out.last().is_none_or(returns) {
             run.facts.guessed = Some(WAY_OUT);
             let whole = run.whole();
             let message = "the contour ends with a rapid back along the cut: taken for the way \
                            out of it";
             run.report.note_once("contour-way-out", message, whole);
         }
-        let start = self.position.at;
-        let mut corner = start;
-        corner[X] += contour.allowance[0];
-        corner[Z] += contour.allowance[1];
         let floor = approach.end[deep];
         let inward = (floor - corner[deep]).signum();
         let forward = (last.end[along] - approach.end[along]).signum();
@@ -89,6 +95,10 @@ impl Control<'_> {
                 run,
             );
             return;
+        }
+        let as_type_one = self.machine.controller.language.type_2_as_type_1 && !type_two;
+        if contour.two_axes && !as_type_one {
+            run.facts.guessed = run.facts.guessed.or(Some(TYPE_TWO));
         }
         let count = (floor - corner[deep]).abs() / depth_mm;
         if count > 1e5 {

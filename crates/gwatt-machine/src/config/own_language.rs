@@ -33,6 +33,7 @@ pub(crate) fn take(
     let given = |length: &Option<NotNegative>| length.as_ref().map(|length| length.value);
     language.escape_mm = given(&own.escape_mm);
     language.groove_return_mm = given(&own.groove_return_mm);
+    language.type_2_as_type_1 = own.type_2_as_type_1 == Some(true);
     language.arc_without_center_is_line =
         own.arc_without_center == Some(ArcWithoutCenterName::Line);
     if let Some(feed) = &own.power_on_feed_mm_min {

@@ -102,6 +102,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
         escape_mm: None,
         groove_return_mm: None,
+        type_2_as_type_1: false,
         arc_without_center_is_line: false,
         arc_tolerance_mm: table
             .arc_tolerance_mm
