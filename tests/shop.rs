@@ -66,6 +66,23 @@ impl Shop {
         self.0.path().join(name).exists()
     }
 
+    /// The same of `limit` with these options, where `a.nc` is this program.
+    pub fn limit(&self, program: &str, options: &str) -> (i32, String, String) {
+        self.put("a.nc", program);
+        self.run(format!("limit a.nc {options}").trim_end())
+    }
+
+    /// What `limit` writes for a program, which fits.
+    #[track_caller]
+    pub fn limited(&self, program: &str, options: &str) -> String {
+        let (code, text, errors) = self.limit(program, options);
+        assert_eq!(code, 0, "{errors}");
+        self.put("out.nc", &text);
+        let (code, _, errors) = self.run("check out.nc");
+        assert_eq!(code, 0, "{errors}\n{text}");
+        text
+    }
+
     /// Exit code, standard output and standard error, on the mill.
     pub fn run(&self, arguments: &str) -> (i32, String, String) {
         let output = Command::new(env!("CARGO_BIN_EXE_gwatt"))

@@ -165,12 +165,7 @@ fn need(entry: &Entry, before: &Mark) -> Need {
         };
     }
     let sealed = facts.checksum || facts.dwell_takes_feed;
-    let shows = facts.boundary
-        || facts.selects_tool
-        || facts.stop_word.is_some()
-        || facts.reads_state
-        || facts.turns_knob
-        || entry.block.tape;
+    let shows = facts.looks_at_state() || entry.block.tape;
     let takes_word = facts.uses_motion && facts.uses_feed;
     // Under compensation these are moves of earlier blocks, which have had their turn.
     let obeys = !facts.compensated

@@ -126,11 +126,7 @@ fn looks_at_state(entry: &Entry) -> bool {
     let facts = &entry.facts;
     let mut words = entry.block.words.iter();
     words.any(|word| word.letter == b'G' && (40.0..43.0).contains(&word.value))
-        || facts.boundary
-        || facts.selects_tool
-        || facts.stop_word.is_some()
-        || facts.reads_state
-        || facts.turns_knob
+        || facts.looks_at_state()
         || facts.transfers
 }
 

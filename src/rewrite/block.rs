@@ -132,13 +132,9 @@ impl<'m> Rewriter<'m> {
         }
         // Nothing can be put back inside a block that takes no further word.
         let sealed = facts.checksum || facts.dwell_takes_feed;
-        let looked_at = facts.boundary
-            || facts.selects_tool
-            || facts.stop_word.is_some()
+        let looked_at = facts.looks_at_state()
             // Between blocks under compensation nothing can be put right.
             || facts.compensated
-            || facts.turns_knob
-            || facts.reads_state
             || sealed
             || view.block.tape
             || view.block.delete_level > 0;

@@ -10,17 +10,6 @@ fn shop(controller: &str, power_w: f64) -> Shop {
     Shop::mill(controller, &converter, "[path]\nrapid = \"linear\"", "")
 }
 
-/// What is written, which fits when it is read again.
-fn limited(shop: &Shop, program: &str) -> String {
-    shop.put("a.nc", program);
-    let (code, text, errors) = shop.run("limit a.nc");
-    assert_eq!(code, 0, "{errors}");
-    shop.put("out.nc", &text);
-    let (code, _, errors) = shop.run("check out.nc");
-    assert_eq!(code, 0, "{errors}\n{text}");
-    text
-}
-
 /// Each mode of SINUMERIK has a kin with a feed per minute and the same rule for the spindle, so
 /// that constant surface speed goes on.
 #[test]
@@ -29,7 +18,7 @@ fn sinumerik_keeps_the_rule_for_the_spindle() {
         format!("G18 G54 G90 G60\nLIMS=3000\n{mode}\nG0 X400 Z300\nG1 Z250 F0.2\nG0 X0 Z0\nM30\n")
     };
     let shop = shop("siemens", 600.0);
-    assert_snapshot!(limited(&shop, &program("G96 S200 M3")), @r"
+    assert_snapshot!(shop.limited(&program("G96 S200 M3"), ""), @r"
     G18 G54 G90 G60
     LIMS=3000
     G96 S200 M3
@@ -42,7 +31,7 @@ fn sinumerik_keeps_the_rule_for_the_spindle() {
     G0 G96 F0.2
     M30
     ");
-    assert_snapshot!(limited(&shop, &program("G97 S2000 M3")), @r"
+    assert_snapshot!(shop.limited(&program("G97 S2000 M3"), ""), @r"
     G18 G54 G90 G60
     LIMS=3000
     G97 S2000 M3
@@ -55,7 +44,7 @@ fn sinumerik_keeps_the_rule_for_the_spindle() {
     G0 G97 F0.2
     M30
     ");
-    assert_snapshot!(limited(&shop, &program("S2000 M3 G95")), @r"
+    assert_snapshot!(shop.limited(&program("S2000 M3 G95"), ""), @r"
     G18 G54 G90 G60
     LIMS=3000
     S2000 M3 G95
@@ -74,7 +63,7 @@ fn sinumerik_keeps_the_rule_for_the_spindle() {
 #[test]
 fn an_inverse_time_has_no_feed_to_put_back() {
     let program = "G21 G90 G54 G93\nG0 X400. Y300.\nG1 X390. F100.\nG0 X0. Y0.\nM30\n";
-    assert_snapshot!(limited(&shop("fanuc", 600.0), program), @r"
+    assert_snapshot!(shop("fanuc", 600.0).limited(program, ""), @r"
     G21 G90 G54 G93
     G94
     G4 P1
@@ -87,7 +76,7 @@ fn an_inverse_time_has_no_feed_to_put_back() {
     G0 G93
     M30
     ");
-    assert_snapshot!(limited(&shop("linuxcnc", 600.0), program), @r"
+    assert_snapshot!(shop("linuxcnc", 600.0).limited(program, ""), @r"
     G21 G90 G54 G93
     G94
     G4 P0
@@ -98,7 +87,7 @@ fn an_inverse_time_has_no_feed_to_put_back() {
     G0 X0. Y0.
     M30
     ");
-    assert_snapshot!(limited(&shop("grbl", 600.0), program), @r"
+    assert_snapshot!(shop("grbl", 600.0).limited(program, ""), @r"
     G21 G90 G54 G93
     G94
     G1 X400. Y300. F26966

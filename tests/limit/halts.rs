@@ -10,26 +10,20 @@ fn shop(controller: &str, power_w: f64) -> Shop {
     Shop::mill(controller, &converter, "[path]\nrapid = \"linear\"", "")
 }
 
-/// Exit code, what is written and what is said.
-fn limited(shop: &Shop, program: &str, options: &str) -> (i32, String, String) {
-    shop.put("a.nc", program);
-    shop.run(format!("limit a.nc {options}").trim_end())
-}
-
 /// At F20000 an axis draws 0.3333·(200·3 + 100)/0.8 = 292 W, and 100 W at rest: by itself
 /// it fits under 450 W. Blended with the next one it draws 683 W, so that 350 W are shared
 /// by both at F12000: 5 s against 3 s and 0.22 s for the stop.
 #[test]
 fn a_stop_takes_the_place_of_a_lower_feed() {
     let program = "G21 G90 G64\nG1 X1000. F20000.\nN20 Y1000.\nX0. Y0.\nM30\n";
-    let (code, text, errors) = limited(&shop("fanuc", 450.0), program, "--allow feed,stop");
+    let (code, text, errors) = shop("fanuc", 450.0).limit(program, "--allow feed,stop");
     assert_eq!(code, 0, "{errors}");
     // X and Y together have 350 W, 0.2 m/s each: 0.2·2·(200·3 + 100)/0.8.
     assert_eq!(
         text,
         "G21 G90 G64\nG9 G1 X1000. F20000.\nN20 G9 Y1000.\nX0. Y0. F16970.\nF20000.\nM30\n"
     );
-    let (code, text, _) = limited(&shop("fanuc", 450.0), program, "--allow feed");
+    let (code, text, _) = shop("fanuc", 450.0).limit(program, "--allow feed");
     assert_eq!(code, 0);
     assert!(text.contains("G1 X1000. F11999.\n"), "{text}");
 }
@@ -38,12 +32,9 @@ fn a_stop_takes_the_place_of_a_lower_feed() {
 #[test]
 fn short_blocks_take_the_lower_feed() {
     let program = "G21 G90 G64\nG1 X10. F20000.\nY10.\nX0.\nY0.\nM30\n";
-    let with = limited(&shop("fanuc", 450.0), program, "--allow feed,stop");
+    let with = shop("fanuc", 450.0).limit(program, "--allow feed,stop");
     assert_eq!(with.0, 0, "{}", with.2);
-    assert_eq!(
-        with,
-        limited(&shop("fanuc", 450.0), program, "--allow feed")
-    );
+    assert_eq!(with, shop("fanuc", 450.0).limit(program, "--allow feed"));
 }
 
 /// Without a word for the feed the stop alone may do.
@@ -51,13 +42,13 @@ fn short_blocks_take_the_lower_feed() {
 fn stops_need_no_other_permission() {
     let program = "G21 G90 G64\nG1 X10. F20000.\nY10.\nM30\n";
     let shop = shop("fanuc", 450.0);
-    let (code, text, errors) = limited(&shop, program, "--allow stop --report r.csv");
+    let (code, text, errors) = shop.limit(program, "--allow stop --report r.csv");
     assert_eq!(code, 0, "{errors}");
     assert_eq!(text, "G21 G90 G64\nG9 G1 X10. F20000.\nY10.\nM30\n");
     let report = shop.get("r.csv");
     let row = report.lines().nth(1).unwrap_or_default();
     assert!(row.contains(",exact stop,G9,"), "{report}");
-    let (code, _, errors) = limited(&shop, program, "");
+    let (code, _, errors) = shop.limit(program, "");
     assert_eq!(code, 1);
     assert!(errors.contains("cutting feeds are not changed"), "{errors}");
 }
@@ -76,7 +67,7 @@ fn each_control_has_its_own_word() {
         let shop = shop(controller, 450.0);
         let program = "G90\nG1 X1000. F20000.\nY1000.\nM30\n";
         let options = "--allow feed,stop --strategy speed";
-        let (code, text, errors) = limited(&shop, program, options);
+        let (code, text, errors) = shop.limit(program, options);
         assert_eq!(code, 0, "{controller}: {errors}");
         let expected = format!("G90\n{word} G1 X1000. F20000.\nY1000.\nM30\n");
         assert_eq!(text, expected, "{controller}");
@@ -87,7 +78,7 @@ fn each_control_has_its_own_word() {
 /// becomes a feed and in its own; at 600 W both axes may run at F26404.
 #[test]
 fn rapids_between_two_words() {
-    let limited_to_600_w = |program: &str| limited(&shop("okuma", 600.0), program, "--allow feed");
+    let limited_to_600_w = |program: &str| shop("okuma", 600.0).limit(program, "--allow feed");
     let (code, text, errors) = limited_to_600_w(
         "G0 X1000. Y800.\nG1 X5. F500\nX8.\nG0 X0. Y0.\nG1 X3. F400\nG61 X2.\nG0 X1000. Y802.\n\
          G64\nM30\n",
@@ -123,13 +114,13 @@ fn rapids_in_exact_stop_mode() {
     let lathe = Shop::lathe("okuma-lathe", 700.0, "");
     let program =
         "G50 S2000\nG97 S500 M3\nG0 X200. Z100.\nG1 Z50. F0.2\nX190.\nG0 X600. Z300.\nM2\n";
-    let (code, text, errors) = limited(&lathe, program, "");
+    let (code, text, errors) = lathe.limit(program, "");
     assert_eq!(code, 0, "{errors}");
     assert!(
         text.contains("\nG61\nX190.\nG94\nG1 X600. Z300. F"),
         "{text}"
     );
-    let (code, _, errors) = limited(&lathe, &text, "");
+    let (code, _, errors) = lathe.limit(&text, "");
     assert_eq!(code, 0, "{errors}");
 }
 
@@ -173,14 +164,14 @@ fn axes_rest_where_the_tool_changes() {
 fn rapids_after_g64() {
     let shop = shop("iso", 600.0);
     let program = "G0 X1000. Y800.\nG64\nG1 X5. F500\nX8.\nG0 X1008. Y0.\nG1 X3. F400\nM30\n";
-    let (code, text, errors) = limited(&shop, program, "--allow feed");
+    let (code, text, errors) = shop.limit(program, "--allow feed");
     assert_eq!(code, 0, "{errors}");
     assert_eq!(
         text,
         "G1 X1000. Y800. F26404\nG64\nG1 X5. F500\nG61\nX8.\nG1 X1008. Y0. F26404\nG64\n\
          G1 X3. F400\nM30\n"
     );
-    let (code, _, errors) = limited(&shop, &text, "--allow feed");
+    let (code, _, errors) = shop.limit(&text, "--allow feed");
     assert_eq!(code, 0, "{errors}");
     assert!(errors.contains("fits as it is"), "{errors}");
 }
@@ -197,11 +188,11 @@ fn a_control_without_the_word() {
         ("linuxcnc", "the planner of `linuxcnc` is modelled"),
     ] {
         let shop = shop(controller, 450.0);
-        let (code, with, errors) = limited(&shop, program, "--allow feed,stop");
+        let (code, with, errors) = shop.limit(program, "--allow feed,stop");
         assert_eq!(code, 0, "{controller}: {errors}");
         assert!(errors.contains("warning[no-stop-word]"), "{errors}");
         assert!(errors.contains(reason), "{errors}");
-        let (_, without, errors) = limited(&shop, program, "--allow feed");
+        let (_, without, errors) = shop.limit(program, "--allow feed");
         assert_eq!(with, without);
         assert!(!errors.contains("no-stop-word"), "{errors}");
     }
@@ -223,7 +214,7 @@ fn where_no_stop_is_put() {
         let shop = shop("fanuc", 450.0);
         shop.put("tools.tbl", "T1 P1 D4\n");
         let all = format!("--allow feed,stop {options}");
-        let (_, text, errors) = limited(&shop, &program, all.trim_end());
+        let (_, text, errors) = shop.limit(&program, all.trim_end());
         assert!(!text.contains("G9 "), "{program}{text}{errors}");
     }
 }
@@ -233,7 +224,7 @@ fn where_no_stop_is_put() {
 fn stops_among_feeds_of_another_meaning() {
     let shop = shop("haas", 450.0);
     let program = "G21 G90 G64\nG93 G1 X1000. F20.\nY1000. F20.\nG94\nM30\n";
-    let (code, text, errors) = limited(&shop, program, "--allow feed,stop");
+    let (code, text, errors) = shop.limit(program, "--allow feed,stop");
     assert_eq!(code, 0, "{errors}");
     assert!(
         text.contains("G93 G9 G1 X1000. F20.\n") || text.contains("G9 G93 G1 X1000. F20.\n"),
@@ -248,7 +239,7 @@ fn a_loop_has_the_stop_in_each_run() {
     let shop = shop("fanuc", 450.0);
     let program = "G21 G90 G64\n#1=0\nWHILE [#1 LT 3] DO1\nG1 X1000. F20000.\nY1000.\nX0.\nY0.\n\
                    #1=#1+1\nEND1\nM30\n";
-    let (code, text, errors) = limited(&shop, program, "--allow feed,stop");
+    let (code, text, errors) = shop.limit(program, "--allow feed,stop");
     assert_eq!(code, 0, "{errors}");
     assert_eq!(text.matches("G9 ").count(), 4, "{text}");
     assert!(!text.contains(" F1"), "{text}");
@@ -260,7 +251,7 @@ fn a_loop_has_the_stop_in_each_run() {
 fn a_modal_macro_call_goes_on() {
     let shop = shop("fanuc", 450.0);
     let program = "G21 G90 G64\nG66 P1\nG1 X1000. F20000.\nY1000.\nG67\nM30\nO1\nG4 X1.\nM99\n";
-    let (code, text, errors) = limited(&shop, program, "--allow feed,stop");
+    let (code, text, errors) = shop.limit(program, "--allow feed,stop");
     assert_eq!(code, 0, "{errors}");
     shop.put("out.nc", &text);
     assert_eq!(moves(&shop, "a.nc"), moves(&shop, "out.nc"), "{text}");
@@ -302,8 +293,8 @@ proptest! {
     fn stops_change_no_path(blocks in prop::collection::vec(block(), 2..14), power_w in 430.0..640.0_f64) {
         let shop = shop("fanuc", power_w);
         let program = format!("G21 G90 G64\nG1 X0. F20000.\n{}M30\n", blocks.concat());
-        let without = limited(&shop, &program, "--allow feed -o without.nc");
-        let with = limited(&shop, &program, "--allow feed,stop -o with.nc");
+        let without = shop.limit(&program, "--allow feed -o without.nc");
+        let with = shop.limit(&program, "--allow feed,stop -o with.nc");
         if without.0 == 0 {
             prop_assert_eq!(with.0, 0, "{}{}", program, with.2);
         }

@@ -10,23 +10,12 @@ fn shop(controller: &str) -> Shop {
     Shop::mill(controller, "peak_power_w = 600", rest, "")
 }
 
-/// What is written, which fits when it is read again.
-fn limited(shop: &Shop, program: &str, options: &str) -> String {
-    shop.put("a.nc", program);
-    let (code, text, errors) = shop.run(format!("limit a.nc {options}").trim_end());
-    assert_eq!(code, 0, "{errors}");
-    shop.put("out.nc", &text);
-    let (code, _, errors) = shop.run("check out.nc");
-    assert_eq!(code, 0, "{errors}\n{text}");
-    text
-}
-
 /// The dwell that keeps a corner sharp stands after the number that the jump looks for.
 #[test]
 fn a_dwell_is_where_the_jump_leads() {
     let program = "G21 G90 G54\n#1=0\nN10 G0 X1000. Y800.\nG1 X990. F500.\n#1=#1+1\n\
                    IF [#1 LT 3] GOTO 10\nM30\n";
-    assert_snapshot!(limited(&shop("fanuc"), program, ""), @r"
+    assert_snapshot!(shop("fanuc").limited(program, ""), @r"
     G21 G90 G54
     #1=0
     N10 G4 P1
@@ -39,7 +28,7 @@ fn a_dwell_is_where_the_jump_leads() {
     ");
     // Of subprograms that are called by a number too.
     let program = "G21 G90 G54\nM97 P100\nM30\nN100 G0 X1000. Y800.\nG1 X990. F500.\nM99\n";
-    assert_snapshot!(limited(&shop("haas"), program, ""), @r"
+    assert_snapshot!(shop("haas").limited(program, ""), @r"
     G21 G90 G54
     M97 P100
     M30
@@ -56,7 +45,7 @@ fn a_dwell_is_where_the_jump_leads() {
 fn names_go_along() {
     let program = "G71 G90 G54 G64\nR1=0\nN5 LB1: G0 X=IC(1000) Y=IC(800)\nG1 X0 F500\nR1=R1+1\n\
                    IF R1<3 GOTOB LB1\nM30\n";
-    assert_snapshot!(limited(&shop("siemens"), program, "--allow unverified"), @r"
+    assert_snapshot!(shop("siemens").limited(program, "--allow unverified"), @r"
     G71 G90 G54 G64
     R1=0
     N5 LB1: ACC[X]=57 ACC[Y]=57 ACC[Z]=57
@@ -82,18 +71,18 @@ fn marks_and_numbers_keep_their_order() {
     };
     let third = |text: &str| text.lines().nth(2).unwrap().to_owned();
     let shop_of = shop("fanuc");
-    let number_first = limited(&shop_of, &loops("N10 /G0 X1000. Y800."), "");
+    let number_first = shop_of.limited(&loops("N10 /G0 X1000. Y800."), "");
     assert_eq!(third(&number_first), "N10 /G4 P1", "{number_first}");
-    let mark_first = limited(&shop_of, &loops("/2 N10 G0 X1000. Y800."), "");
+    let mark_first = shop_of.limited(&loops("/2 N10 G0 X1000. Y800."), "");
     assert_eq!(third(&mark_first), "/2N10 G4 P1", "{mark_first}");
     let program = "O1000 G21 G90 G54 G0 X1000. Y800.\nG1 X990. F500.\nM30\n";
-    let text = limited(&shop_of, program, "");
+    let text = shop_of.limited(program, "");
     assert!(
         text.starts_with("O1000 G4 P1\nG9 G21 G90 G54 G1 X1000. Y800."),
         "{text}"
     );
     let isg = "G71 G90\nP1=0\nN10: G0 X1000 Y800\nG1 X990 F500\nP1=P1+1\n$IF P1<3\n$GOTO N10\n$ENDIF\nM30\n";
-    let text = limited(&shop("isg"), isg, "");
+    let text = shop("isg").limited(isg, "");
     assert!(text.contains("\nN10: G"), "{text}");
 }
 
@@ -102,7 +91,7 @@ fn marks_and_numbers_keep_their_order() {
 fn labels_stay_where_nothing_stands_before() {
     let program = "G21 G90 G61\n#1=0\nG1 X1. F500.\nN10 G0 X1000. Y800.\nN20 G1 X990. F500.\n\
                    #1=#1+1\nIF [#1 LT 3] GOTO 10\nM30\n";
-    assert_snapshot!(limited(&shop("fanuc"), program, ""), @r"
+    assert_snapshot!(shop("fanuc").limited(program, ""), @r"
     G21 G90 G61
     #1=0
     G1 X1. F500.
@@ -124,7 +113,7 @@ fn a_dwell_calls_no_macro() {
     shop.put("a.nc", program);
     let (_, out, _) = shop.run("moves a.nc");
     assert_eq!(out.matches("\"line\":10,").count(), 1, "{out}");
-    assert_snapshot!(limited(&shop, program, ""), @r"
+    assert_snapshot!(shop.limited(program, ""), @r"
     O6
     G21 G90 G54 G0 X0 Y0 Z50.
     G66 P9001 Z-5.

@@ -9,19 +9,13 @@ fn shop(path: &str, power_w: f64) -> Shop {
     Shop::mill("fanuc", &converter, path, "")
 }
 
-/// Exit code, what is written and what is said.
-fn limited(shop: &Shop, program: &str, options: &str) -> (i32, String, String) {
-    shop.put("a.nc", program);
-    shop.run(format!("limit a.nc {options}").trim_end())
-}
-
 /// One axis alone moves along a line anyway: (0.5·(200·3 + 100))/0.8 and 100 W at rest are
 /// 537.5 W.
 #[test]
 fn a_rapid_of_one_axis_is_a_line() {
     let shop = shop("", 400.0);
     let program = "G21 G90\nG0 X400.\nY300.\nG1 Y310. F500\nG0 Z50.\nM30\n";
-    let (code, text, errors) = limited(&shop, program, "");
+    let (code, text, errors) = shop.limit(program, "");
     assert_eq!(code, 0, "{errors}");
     // 30000 mm/min by (400 − 100)/437.5.
     assert_eq!(
@@ -38,7 +32,7 @@ fn a_rapid_of_several_axes_needs_room() {
     let permit = "--allow straighten";
     // No clearance, and no permission.
     for (path, options) in [("", permit), ("[path]\nclearance = { Z = 50 }", "")] {
-        let (code, _, errors) = limited(&shop(path, 600.0), program, options);
+        let (code, _, errors) = shop(path, 600.0).limit(program, options);
         assert!(code == 1 && errors.contains(each), "{errors}");
         // What is given already is not asked for.
         assert_eq!(errors.contains(permit), options.is_empty(), "{errors}");
@@ -46,14 +40,14 @@ fn a_rapid_of_several_axes_needs_room() {
     }
     // The last rapid goes below it.
     let roomy = shop("[path]\nclearance = { Z = 50 }", 600.0);
-    let (code, _, errors) = limited(&roomy, program, permit);
+    let (code, _, errors) = roomy.limit(program, permit);
     assert_eq!(code, 1);
     assert!(
         errors.contains("a.nc:4:1") && !errors.contains("a.nc:3:1"),
         "{errors}"
     );
     let above = program.replace("Z20.", "Z50.");
-    let (code, text, errors) = limited(&roomy, &above, permit);
+    let (code, text, errors) = roomy.limit(&above, permit);
     assert_eq!(code, 0, "{errors}");
     assert!(text.contains("G9 G1 X400. Y300. F"), "{text}");
     let condition = "rapids of several axes may run along lines beyond the clearance";
@@ -76,7 +70,7 @@ fn the_largest_feed() {
     // 200 mm/s, and 200/3000 s for the two ramps.
     assert!((seconds(1) - (1.0 + 200.0 / 3000.0)).abs() < 1e-6, "{csv}");
     assert!(seconds(2) > std::f64::consts::PI * 50.0 / 200.0, "{csv}");
-    let (code, text, errors) = limited(&shop, program, "");
+    let (code, text, errors) = shop.limit(program, "");
     assert_eq!(code, 0, "{errors}");
     assert!(text.contains("G9 G1 Y300. F12000.\n"), "{text}");
     assert!(
@@ -103,7 +97,7 @@ fn the_largest_feed_of_an_axis() {
     let ramps_s = 200.0 / 3750.0;
     let duration_s: f64 = row[5].parse().unwrap();
     assert!((duration_s - (2.5 + ramps_s)).abs() < 1e-6, "{csv}");
-    let (code, text, errors) = limited(&shop, program, "");
+    let (code, text, errors) = shop.limit(program, "");
     assert_eq!(code, 0, "{errors}");
     assert!(text.contains("G9 G1 X0. Y0. F12000.\n"), "{text}");
 }

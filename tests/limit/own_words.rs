@@ -10,13 +10,8 @@ fn shop(controller: &str, power_w: f64, rest: &str) -> Shop {
     Shop::mill(controller, &converter, &rest, "")
 }
 
-fn limited(shop: &Shop, program: &str, options: &str) -> (i32, String, String) {
-    shop.put("a.nc", program);
-    shop.run(format!("limit a.nc {options}").trim_end())
-}
-
 fn written(shop: &Shop, program: &str, options: &str) -> String {
-    let (code, text, errors) = limited(shop, program, options);
+    let (code, text, errors) = shop.limit(program, options);
     assert_eq!(code, 0, "{errors}");
     text
 }
@@ -26,7 +21,7 @@ fn written(shop: &Shop, program: &str, options: &str) -> String {
 fn accelerations_of_the_program() {
     let shop = shop("marlin", 600.0, "");
     let program = "G21\nG90\nM204 P1000 T1500\nG0 X100 Y80 F9000\nG1 X50 F1200\n";
-    let (code, _, errors) = limited(&shop, program, "--allow feed");
+    let (code, _, errors) = shop.limit(program, "--allow feed");
     assert_eq!(code, 0, "{errors}");
 }
 
@@ -66,7 +61,7 @@ fn a_cancelled_cycle_with_a_place() {
 fn motion_words_that_are_worked_out() {
     let shop = shop("fanuc", 600.0, "");
     let program = "G21 G90 G54\n#1=0\nG#1 X1000. Y800.\nM30\n";
-    let (code, text, errors) = limited(&shop, program, "");
+    let (code, text, errors) = shop.limit(program, "");
     assert_eq!((code, text.as_str()), (1, ""));
     assert!(
         errors.contains("its motion word is worked out by the program"),
@@ -108,7 +103,7 @@ fn reference_points_that_nobody_gave() {
             "[offsets]\nG54 = { X = -450, Y = -330, Z = -300 }",
         );
         let program = program.replace("G30", word);
-        let (code, text, errors) = limited(&shop, &program, "");
+        let (code, text, errors) = shop.limit(&program, "");
         assert_eq!((code, text.as_str()), (1, ""), "{controller} {program}");
         assert!(errors.contains(help), "{controller} {program}: {errors}");
     }

@@ -18,12 +18,6 @@ fn shop(controller: &str, rest: &str, axis: &str) -> Shop {
     shop
 }
 
-/// Exit code, what is written, and what is said.
-fn limited(shop: &Shop, program: &str, options: &str) -> (i32, String, String) {
-    shop.put("a.nc", program);
-    shop.run(format!("limit a.nc {options}").trim_end())
-}
-
 /// Where the moves end, in mm, as far as they take the axes anywhere.
 fn ends(shop: &Shop, program: &str, options: &str) -> Vec<[f64; 3]> {
     shop.put("moves.nc", program);
@@ -51,7 +45,7 @@ fn the_way_is_gone_before_the_return() {
                    N100 G91 G28 Z0 M5\nN110 G28 X0 Y0\nG90\nX10.\nG28 X50. Y20. (HOME)\n\
                    G53 G0 Z-5.\nM30\n";
     let options = "--allow feed --tool-table tools.tbl";
-    let (code, text, errors) = limited(&shop, program, options);
+    let (code, text, errors) = shop.limit(program, options);
     assert_eq!(code, 0, "{errors}");
     assert_eq!(
         ends(&shop, program, "--tool-table tools.tbl"),
@@ -64,29 +58,23 @@ fn the_way_is_gone_before_the_return() {
 fn what_is_not_known_is_asked_for() {
     let program = "G21 G90 G54\nG0 G43 H1 Z50.\nX400.\nG91 G28 Z0\nG28 X0\nM30\n";
     let unknown = shop("haas", "", "reference_mm = 0");
-    let (code, _, errors) = limited(&unknown, program, "--tool-table tools.tbl");
+    let (code, _, errors) = unknown.limit(program, "--tool-table tools.tbl");
     assert_eq!(code, 1);
     let offset = "the way to the reference point is not gone by a feed: the work offset is not \
                   known: give it in [offsets] of the machine file, or with --parameters";
     assert!(errors.contains(offset), "{errors}");
 
     let known = shop("haas", PLACES, "reference_mm = 0");
-    let (code, _, errors) = limited(&known, program, "");
+    let (code, _, errors) = known.limit(program, "");
     assert_eq!(code, 1);
     let length = "the length of the tool is not known: give it with --tool-table";
     assert!(errors.contains(length), "{errors}");
-    assert_eq!(limited(&known, program, "--tool-table tools.tbl").0, 0);
+    assert_eq!(known.limit(program, "--tool-table tools.tbl").0, 0);
     // X has no length of a tool in it.
     let along_x = program.replace("G91 G28 Z0\n", "G91 ");
-    assert_eq!(limited(&known, &along_x, "").0, 0);
+    assert_eq!(known.limit(&along_x, "").0, 0);
     // G55 is known, G56 is not.
-    let other = |word: &str| {
-        limited(
-            &known,
-            &program.replace("G54", word),
-            "--tool-table tools.tbl",
-        )
-    };
+    let other = |word: &str| known.limit(&program.replace("G54", word), "--tool-table tools.tbl");
     assert_eq!(other("G55").0, 0);
     let (code, _, errors) = other("G56");
     assert!(code == 1 && errors.contains(offset), "{errors}");
@@ -109,7 +97,7 @@ fn returns_that_stay_as_they_are() {
             "it runs under cutter compensation",
         ),
     ] {
-        let (code, _, errors) = limited(&shop, program, "--allow feed");
+        let (code, _, errors) = shop.limit(program, "--allow feed");
         assert!(code != 0 && errors.contains(why), "{program}\n{errors}");
     }
 }
@@ -152,7 +140,7 @@ fn the_speed_of_homing_is_not_that_of_a_rapid() {
 fn machine_coordinates_with_a_feed() {
     let shop = shop("grbl", PLACES, "");
     let program = "G21 G90 G1 X1 F500\nG53 G0 X400 Y300\nG1 X2\nM2\n";
-    let (code, text, errors) = limited(&shop, program, "");
+    let (code, text, errors) = shop.limit(program, "");
     assert_eq!(code, 0, "{errors}");
     assert!(text.contains("G53 G1 X400 Y300 F"), "{text}");
     assert!(text.contains("G1 X2 F500\n"), "{text}");
@@ -183,7 +171,7 @@ fn random_programs_return_to_the_same_places() {
             };
         }
         program.push_str("M30\n");
-        let (code, text, errors) = limited(&shop, &program, "--allow feed");
+        let (code, text, errors) = shop.limit(&program, "--allow feed");
         if code == 0 {
             certified += 1;
             assert_eq!(
@@ -208,7 +196,7 @@ fn reasons_show_the_block_that_returns() {
     let machine = shop.get("mill.toml");
     shop.put("mill.toml", &machine.replace("rapid = \"linear\"\n", ""));
     let program = "G21 G90 G94 G54\nG91 G28 X0 Y0\nG90\nM30\n";
-    let (code, out, errors) = limited(&shop, program, "--allow feed -o out.nc");
+    let (code, out, errors) = shop.limit(program, "--allow feed -o out.nc");
     assert_eq!(code, 1, "{errors}");
     assert!(
         errors.contains("its axes move each for itself") && errors.contains("a.nc:2:1\n"),

@@ -17,12 +17,6 @@ fn shop(controller: &str, power_w: f64) -> Shop {
     shop
 }
 
-/// Exit code, what is written and what is said.
-fn limited(shop: &Shop, program: &str, options: &str) -> (i32, String, String) {
-    shop.put("a.nc", program);
-    shop.run(format!("limit a.nc {options}").trim_end())
-}
-
 const PROGRAM: &str = "G21 G90\nG0 Z20.\nG0 X0. Y0.\nG0 Z0.\nG1 X900. F20000.\nG1 Y200.\nG1 X0.\n\
                        G0 Z20.\nG0 Y0.\nM6 T2\nG0 Z0.\nG1 X900.\nG1 X0.\nG0 Z20.\nM2\n";
 
@@ -38,9 +32,9 @@ fn dwells(text: &str, word: &str) -> Vec<f64> {
 #[test]
 fn the_program_waits_between_rapids() {
     let shop = shop("iso", 84.0);
-    let (code, _, errors) = limited(&shop, PROGRAM, "");
+    let (code, _, errors) = shop.limit(PROGRAM, "");
     assert_eq!(code, 1, "{errors}");
-    let (code, text, errors) = limited(&shop, PROGRAM, "--allow pause --json r.json");
+    let (code, text, errors) = shop.limit(PROGRAM, "--allow pause --json r.json");
     assert_eq!(code, 0, "{errors}");
     let seconds = dwells(&text, "G4 P");
     assert!(!seconds.is_empty(), "{text}");
@@ -97,7 +91,7 @@ fn each_control_waits_in_its_own_words() {
             "M6 T2"
         };
         let program = PROGRAM.replace("G21 ", "").replace("M6 T2", change);
-        let (code, text, errors) = limited(&shop, &program, "--allow pause");
+        let (code, text, errors) = shop.limit(&program, "--allow pause");
         assert_eq!(code, 0, "{controller}: {errors}");
         assert!(!dwells(&text, word).is_empty(), "{controller}: {text}");
         shop.put("fit.nc", &text);
@@ -109,8 +103,8 @@ fn each_control_waits_in_its_own_words() {
 #[test]
 fn lower_speeds_that_cost_less_are_taken() {
     let shop = shop("iso", 102.0);
-    let lowered = limited(&shop, PROGRAM, "--allow feed");
-    let both = limited(&shop, PROGRAM, "--allow feed,pause --json r.json");
+    let lowered = shop.limit(PROGRAM, "--allow feed");
+    let both = shop.limit(PROGRAM, "--allow feed,pause --json r.json");
     assert_eq!((lowered.0, both.0), (0, 0), "{}", both.2);
     let time = |errors: &str| -> f64 {
         let (_, rest) = errors.split_once("W (line ").expect("a line");
@@ -131,7 +125,7 @@ fn where_the_program_may_not_wait() {
         format!("G21 G90\n/G0 Z20.\n/G0 Z0.\n{cut}{cut}M30\n"),
     ] {
         let shop = shop("fanuc", 70.0);
-        let (code, _, errors) = limited(&shop, &program, "--allow pause");
+        let (code, _, errors) = shop.limit(&program, "--allow pause");
         assert_eq!(code, 1, "{program}{errors}");
         assert!(
             errors.contains("note[no-place-to-pause]"),
@@ -147,7 +141,7 @@ fn to_wait_is_advised_where_the_program_can() {
     let skipped = PROGRAM.replace("G0 Z20.\nM2", "/G0 Z20.\nM2");
     for (program, can) in [(PROGRAM, true), (cut, false), (&*skipped, false)] {
         let shop = shop("fanuc", 70.0);
-        let (code, _, errors) = limited(&shop, program, "");
+        let (code, _, errors) = shop.limit(program, "");
         assert_eq!(code, 1, "{errors}");
         let advice = "  = help: lower speeds or accelerations around this line";
         let advice = if can {
@@ -159,7 +153,7 @@ fn to_wait_is_advised_where_the_program_can() {
         let (code, shown, _) = shop.run("check a.nc");
         assert_eq!(code, 1, "{shown}");
         assert_eq!(shown.contains("or let it pause"), can, "{shown}");
-        let (_, _, errors) = limited(&shop, program, "--allow pause");
+        let (_, _, errors) = shop.limit(program, "--allow pause");
         assert!(!errors.contains("let it pause"), "{errors}");
     }
 }
@@ -173,7 +167,7 @@ fn waiting_beside_a_spindle() {
     let converter = "peak_power_w = 2000\ncontinuous_power_w = 320\nwindow_s = 30";
     let shop = Shop::mill("iso", converter, rest, "");
     let program = PROGRAM.replacen("G0 Z20.\n", "G0 Z20.\nM3 S1500\n", 1);
-    let (code, text, errors) = limited(&shop, &program, "--allow pause");
+    let (code, text, errors) = shop.limit(&program, "--allow pause");
     assert_eq!(code, 0, "{errors}");
     assert!(text.contains("M3 S1500") && !text.contains("M5"), "{text}");
 }

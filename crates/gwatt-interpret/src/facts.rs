@@ -95,6 +95,19 @@ pub struct Facts {
     pub called: Option<CalledCycle>,
 }
 
+impl Facts {
+    /// Whether the modal state before the block must be the original's: it shows it, keeps it, or
+    /// may be where the program goes on by hand.
+    #[must_use]
+    pub fn looks_at_state(&self) -> bool {
+        self.boundary
+            || self.selects_tool
+            || self.stop_word.is_some()
+            || self.reads_state
+            || self.turns_knob
+    }
+}
+
 /// A cycle that is called by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CalledCycle {

@@ -15,12 +15,7 @@ impl Rewriter<'_> {
     pub(super) fn write_within(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
         let facts = view.facts;
         let counts = facts.uses_motion || facts.feed_word.is_some();
-        let looked_at = facts.boundary
-            || facts.selects_tool
-            || facts.stop_word.is_some()
-            || facts.turns_knob
-            || facts.reads_state
-            || counts && takes_no_words(view);
+        let looked_at = facts.looks_at_state() || counts && takes_no_words(view);
         let states = self.states && !facts.uses_motion;
         if (looked_at || states) && !self.stands_as_before(view) {
             return self.put_right_within(view) && self.end_within(view, out);
