@@ -8,27 +8,28 @@
 
 mod called;
 mod compare;
+mod kept;
 mod returns;
 mod trace;
 mod turning;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io::Cursor;
+
+use kept::Notes;
 
 use super::executor::{Executor, Line};
 use super::{Failure, LimitSummary, Options, Summary};
+pub(super) use kept::{NOT_WRITTEN_OUT, explain};
 pub(super) use trace::{OriginalRows, Traced, WRITTEN_OUT};
 
 use crate::diagnostic::Diagnostic;
 use crate::interpret::{Interpreter, NO_POINT, Step};
-use crate::limit::{Allowed, NO_KNOB, UNTOUCHABLE};
+use crate::limit::{NO_KNOB, UNTOUCHABLE};
 use crate::machine::Machine;
 use crate::rewrite::{CycleBlock, Singles};
-use crate::source::{Span, lines, split_line_end};
+use crate::source::lines;
 use crate::syntax::{Block, Word};
-
-/// The rule of the note that says why a cycle stays as it is.
-pub(super) const NOT_WRITTEN_OUT: &str = "not-written-out";
 
 /// A program with cycles written out.
 pub(super) struct Expanded {
@@ -102,23 +103,6 @@ pub(super) fn in_fixed_blocks(summary: &LimitSummary) -> bool {
     let mut reasons = summary.reasons.iter();
     summary.reasons.len() >= Summary::KEPT
         || reasons.any(|it| [UNTOUCHABLE, NO_KNOB].contains(&it.rule))
-}
-
-/// Says of blocks that may not be changed why their cycles stay as they are, where they may be
-/// written out, and each reason of a line once, though several moves have it.
-pub(super) fn explain(reasons: &mut Vec<Diagnostic>, notes: &[Diagnostic], allowed: Allowed) {
-    let stays = |note: &&Diagnostic| allowed.expand && note.rule == NOT_WRITTEN_OUT;
-    let why = |note: &Diagnostic| Some((note.line, note.message.split_once(": ")?.1.to_owned()));
-    let whys: BTreeMap<u64, String> = notes.iter().filter(stays).filter_map(why).collect();
-    let mut seen = BTreeSet::new();
-    reasons.retain_mut(|reason| {
-        let why = whys.get(&reason.line).filter(|_| reason.file.is_none());
-        if let Some(why) = why.filter(|_| reason.rule == UNTOUCHABLE) {
-            reason.help = Some(format!("it is not written out as single blocks: {why}"));
-        }
-        let key = (reason.file.clone(), reason.line, reason.message.clone());
-        seen.insert(key)
-    });
 }
 
 /// Writes cycles in another way where `way` asks for that of one of their lines; it holds
@@ -203,29 +187,6 @@ pub(super) fn expand(
             "written in another way it would not move as it does",
             program,
         );
-    }
-}
-
-/// Notes why cycles stay as they are, each once.
-#[derive(Default)]
-struct Notes {
-    list: Vec<Diagnostic>,
-}
-
-impl Notes {
-    fn stays(&mut self, line: u64, what: &str, why: &str, program: &[u8]) {
-        let message = format!("{what}: {why}");
-        let said = |note: &Diagnostic| note.line == line && note.message == message;
-        if self.list.iter().any(said) {
-            return;
-        }
-        let text = line
-            .checked_sub(1)
-            .and_then(|index| lines(program).nth(index as usize));
-        let text = text.unwrap_or_default();
-        let span = Span::new(0, split_line_end(text).0.len());
-        self.list
-            .push(Diagnostic::note(NOT_WRITTEN_OUT, message).at(line, span, text));
     }
 }
 
