@@ -23,7 +23,7 @@ use super::ways::{has_ways, ways};
 use super::writer::Plan;
 use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::limit::Depths;
+use crate::limit::{Allowed, Depths};
 use crate::machine::Machine;
 use crate::power::Lower;
 
@@ -226,24 +226,30 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
         expanded.trace(&program, &mut next);
         last = Some(next);
     }
-    Ok(match last {
-        Some(mut last) => {
-            // Presets are those of the program as it was written.
-            let of_presets = |note: &Diagnostic| [NO_PRESET, NOT_SET].contains(&note.rule);
-            let notes = &mut first.before.notes;
-            notes.retain(|note| !of_presets(note));
-            notes.extend(last.before.notes.drain(..).filter(of_presets));
-            explain(&mut last.reasons, notes, how.allowed);
-            LimitSummary {
-                before: first.before,
-                ..last
-            }
-        }
-        None => {
-            explain(&mut first.reasons, &first.before.notes, how.allowed);
-            first
-        }
-    })
+    Ok(of_original(first, last, how.allowed))
+}
+
+/// What came of a program of which parts were written in another way, `last`, with what is said
+/// of the program itself, `first`.
+fn of_original(
+    mut first: LimitSummary,
+    last: Option<LimitSummary>,
+    allowed: Allowed,
+) -> LimitSummary {
+    let Some(mut last) = last else {
+        explain(&mut first.reasons, &first.before.notes, allowed);
+        return first;
+    };
+    // Presets are those of the program as it was written.
+    let of_presets = |note: &Diagnostic| [NO_PRESET, NOT_SET].contains(&note.rule);
+    let notes = &mut first.before.notes;
+    notes.retain(|note| !of_presets(note));
+    notes.extend(last.before.notes.drain(..).filter(of_presets));
+    explain(&mut last.reasons, notes, allowed);
+    LimitSummary {
+        before: first.before,
+        ..last
+    }
 }
 
 /// Limits a program as it stands, for all `paths` through it.

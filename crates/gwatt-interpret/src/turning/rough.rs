@@ -11,7 +11,7 @@ use super::piece::{Piece, TOLERANCE_MM, contour_wrong};
 use super::pockets::Stock;
 use super::{TYPE_TWO, X, Z};
 use crate::control::{Control, Run};
-use gwatt_machine::AxisSet;
+use gwatt_machine::{AxisSet, AxisValues};
 use gwatt_motion::{Move, MoveKind};
 
 impl Control<'_> {
@@ -60,19 +60,7 @@ impl Control<'_> {
         let mut corner = start;
         corner[X] += contour.allowance[0];
         corner[Z] += contour.allowance[1];
-        // Where it leads to the beginning of the cycle it is the cycle's own return.
-        let returns = |piece: &Piece| {
-            [X, Z]
-                .iter()
-                .all(|axis| (piece.end[*axis] - corner[*axis]).abs() < TOLERANCE_MM)
-        };
-        if !way_out.last().is_none_or(returns) {
-            run.facts.guessed = Some(WAY_OUT);
-            let whole = run.whole();
-            let message = "the contour ends with a rapid back along the cut: taken for the way \
-                           out of it";
-            run.report.note_once("contour-way-out", message, whole);
-        }
+        guess_way_out(way_out, &corner, run);
         let floor = approach.end[deep];
         let inward = (floor - corner[deep]).signum();
         let forward = (last.end[along] - approach.end[along]).signum();
@@ -215,6 +203,20 @@ impl Control<'_> {
 
 /// Why such a cycle stays as it is.
 const WAY_OUT: &str = "its contour ends with a rapid back along the cut";
+
+/// Says that the rapids at the end of a contour are taken for the way out of it. Where they lead
+/// to the beginning of the cycle, `corner`, they are the cycle's own return.
+fn guess_way_out(way_out: &[Piece], corner: &AxisValues, run: &mut Run<'_, '_>) {
+    let near = |piece: &Piece, axis: usize| (piece.end[axis] - corner[axis]).abs() < TOLERANCE_MM;
+    let returns = |piece: &Piece| near(piece, X) && near(piece, Z);
+    if way_out.last().is_none_or(returns) {
+        return;
+    }
+    run.facts.guessed = Some(WAY_OUT);
+    let whole = run.whole();
+    let message = "the contour ends with a rapid back along the cut: taken for the way out of it";
+    run.report.note_once("contour-way-out", message, whole);
+}
 
 /// The pieces of a contour, and the rapids at its end that lead back along the cut: a last
 /// block such as `G0 G40 Z2.`, which ends the compensation of the nose radius as well.
