@@ -249,6 +249,8 @@ impl Control<'_> {
     #[inline]
     fn execute(&mut self, run: &mut Run<'_, '_>) {
         self.begun = true;
+        // Words that a code would have used are no further mistake where it is refused.
+        let errors = run.report.diagnostics.errors;
         run.words
             .fill(run.block, &self.machine.controller, &mut run.report);
         run.facts.checksum = run.words.checksum;
@@ -260,7 +262,6 @@ impl Control<'_> {
         }
         let language = self.language;
         language.prepare(self, run);
-        let errors = run.report.diagnostics.errors;
         if !self.pending_actions.is_empty() {
             let span = run.whole();
             self.settle_debts(span, run);
