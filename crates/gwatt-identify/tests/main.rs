@@ -5,3 +5,4 @@ mod effects;
 mod sweep;
 mod simulated;
 mod sticking;
+mod units;
