@@ -95,7 +95,10 @@ impl Estimate {
     #[must_use]
     pub fn likelihood(&self) -> f64 {
         let n = self.rows as f64;
-        let rest = self.rest.max(self.floor * self.power).max(f64::MIN_POSITIVE);
+        let rest = self
+            .rest
+            .max(self.floor * self.power)
+            .max(f64::MIN_POSITIVE);
         n * libm::log(rest / n) + 2.0 * self.count as f64
     }
 
