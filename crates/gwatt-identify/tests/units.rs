@@ -205,35 +205,3 @@ fn a_rigid_axis_follows_the_units() {
         assert_eq!(judgement::rigid(&other), judgement::rigid(&plain));
     }
 }
-
-#[test]
-#[ignore = "draft"]
-fn draft_times() {
-    for (quantity, viscous, coulomb, noise, samples) in [
-        (Quantity::Acceleration, 0.048, 0.0, 0.0, 16_000),
-        (Quantity::Acceleration, 0.048, 0.0, 0.05, 16_000),
-        (Quantity::Acceleration, 0.048, 0.3, 0.0, 16_000),
-        (Quantity::Velocity, 0.048, 0.0, 0.0, 16_000),
-        (Quantity::Velocity, 0.048, 0.3, 0.01, 16_000),
-    ] {
-        let mut random = Random(0);
-        let torque = torque(samples, &mut random);
-        let [speed, accel] = axis(&torque, viscous, coulomb);
-        let signal = if quantity == Quantity::Velocity {
-            speed
-        } else {
-            accel
-        };
-        let signal = noisy(&signal, noise, &mut random);
-        let recording = recording(torque, signal, quantity);
-        let start = std::time::Instant::now();
-        let f = identified(&recording, Method::Iv);
-        println!(
-            "{quantity:?} {viscous} {coulomb} {noise} {samples}: {:.2} s J {:?} p {} z {}",
-            start.elapsed().as_secs_f64(),
-            f.inertia,
-            f.transfer.order(),
-            f.transfer.zero_count()
-        );
-    }
-}
