@@ -33,7 +33,7 @@ fn read(preset: &str, map: &[&str], text: &str) -> Result<Recording, String> {
 }
 
 fn finds_the_mass(recording: &Recording) {
-    let found: Rigid = rigid::fit_all(&[recording.clone()], None, None).unwrap();
+    let found: Rigid = rigid::fit_all(std::slice::from_ref(recording), None, None).unwrap();
     let apart = found.mass.value / 50.0 - 1.0;
     assert!(apart.abs() < 0.01, "{:?}", found.mass);
     assert!((recording.period_s / PERIOD_S - 1.0).abs() < 1e-6);
