@@ -14,6 +14,7 @@ Examples:
   gwatt identify x.csv --axis X --model flexible --validate x2.csv
   gwatt identify x.csv --axis X --method frequency --order 4
   gwatt identify x.csv --axis X --html x.html          look at what was found
+  gwatt identify log.txt --preset halscope --axis X --map torque=iq*0.58Nm/A
 
 The header names quantities and units: time_s; force_n or torque_nm;
 position_m, position_mm, position_um, position_rad, position_deg;
@@ -66,6 +67,10 @@ pub struct IdentifyArgs {
     /// torque=Iq*0.58Nm/A or time=#1*1ms
     #[arg(long, value_name = "COLUMN")]
     pub map: Vec<String>,
+    /// The program that wrote the recordings, in its own layout: where names, units and
+    /// times are
+    #[arg(long, value_enum)]
+    pub preset: Option<PresetArg>,
     /// Samples a second, for recordings without times
     #[arg(long, value_name = "HZ")]
     pub rate_hz: Option<f64>,
@@ -116,6 +121,32 @@ pub enum ModelArg {
     Rigid,
     /// Resonances and anti-resonances
     Flexible,
+}
+
+/// Programs whose layouts are known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum PresetArg {
+    /// `LinuxCNC`: the log of Halscope
+    Halscope,
+    /// Beckhoff: `TwinCAT` Scope, exported as CSV
+    TwincatScope,
+    /// Siemens: a trace of SINUMERIK Operate, as XML
+    Sinumerik,
+    /// Klipper: raw data of an accelerometer
+    Klipper,
+}
+
+impl PresetArg {
+    /// The name in the library.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Halscope => "halscope",
+            Self::TwincatScope => "twincat-scope",
+            Self::Sinumerik => "sinumerik",
+            Self::Klipper => "klipper",
+        }
+    }
 }
 
 /// Friction of a rigid axis.

@@ -100,6 +100,7 @@ fn recorded(args: &ExciteArgs, path: &Path) -> Result<Known> {
         },
         map: map.collect::<Outcome<Vec<MappedColumn>>>()?,
         rate_hz: args.rate_hz,
+        preset: None,
     };
     let read = if is_dash(path) {
         Recording::read_as(io::stdin().lock(), &read_as)

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 use gwatt::identify::merge::force_per_torque;
-use gwatt::identify::{MappedColumn, Outcome, ReadAs, Recording};
+use gwatt::identify::{MappedColumn, Outcome, Preset, ReadAs, Recording};
 
 use super::input::is_dash;
 use crate::cli::IdentifyArgs;
@@ -42,6 +42,7 @@ impl RecordingReader {
                 axis: Some(axis),
                 map: map.collect::<Outcome<Vec<MappedColumn>>>()?,
                 rate_hz: args.rate_hz,
+                preset: args.preset.and_then(|preset| Preset::named(preset.name())),
             },
             force_per_torque: ratio,
             reverse: args.reverse,

@@ -28,6 +28,7 @@ fn read_as(map: &[&str], rate_hz: Option<f64>) -> ReadAs {
         axis: Some('X'),
         map: map.iter().map(|text| text.parse().unwrap()).collect(),
         rate_hz,
+        preset: None,
     }
 }
 

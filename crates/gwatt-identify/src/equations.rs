@@ -15,6 +15,8 @@ use super::recording::{Recording, Signal};
 
 /// Below this share of the largest speed an axis counts as standing.
 const STANDING: f64 = 0.005;
+/// Below this share a speed is as good as none.
+const ROUNDING: f64 = 1e-9;
 /// What smooths position and speed first reaches so much farther than the band.
 const SMOOTH: f64 = 3.4;
 
@@ -158,6 +160,11 @@ fn raw(recording: &Recording, bandwidth_hz: f64) -> Outcome<Raw> {
     })
 }
 
+/// The largest speed in either direction.
+fn fastest(velocity: &[f64]) -> f64 {
+    velocity.iter().fold(0.0, |most, v| v.abs().max(most))
+}
+
 /// The sum of a speed over time, from 0 on.
 fn summed(speed: &[f64], period_s: f64) -> Vec<f64> {
     let mut at = 0.0;
@@ -183,8 +190,13 @@ impl Raw {
     /// Every signal after a filter.
     fn filtered(&self, filter: impl Fn(&[f64]) -> Vec<f64>) -> Band {
         let speeds = self.velocity.as_ref().map(|velocity| {
+            // Where it turns round, rounding has a sign too, another one in other units.
+            let rest = ROUNDING * fastest(velocity);
             let part = |keep: fn(f64) -> f64| {
-                let kept: Vec<f64> = velocity.iter().map(|v| keep(*v)).collect();
+                let speeds = velocity
+                    .iter()
+                    .map(|v| if v.abs() > rest { *v } else { 0.0 });
+                let kept: Vec<f64> = speeds.map(keep).collect();
                 filter(&kept)
             };
             Speeds {
@@ -317,11 +329,7 @@ impl Equations {
         let t = raw.period_s;
         let (step, _) = thinning(raw.force.len(), bandwidth_hz, t);
         let inside = raw.filtered(|x| in_band(x, bandwidth_hz, t));
-        let fastest = raw
-            .velocity
-            .iter()
-            .flatten()
-            .fold(0.0, |fastest: f64, v| fastest.max(v.abs()));
+        let fastest = fastest(raw.velocity.as_deref().unwrap_or_default());
         // An axis that stands is held by friction of any size: no equation.
         let counts = match &inside.speeds {
             Some(speeds) => {

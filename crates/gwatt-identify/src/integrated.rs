@@ -154,8 +154,7 @@ impl Stage<'_> {
     fn other_noise(&self, found: &Estimate) -> Option<Noise> {
         let plain = as_it_is(&self.rows, &found.transfer)?;
         let left = residuals(&self.rows, &plain)?;
-        let exact = found.rest <= 1e-12 * found.power;
-        if exact || is_white(&left, &self.noise.taps) {
+        if found.is_exact() || is_white(&left, &self.noise.taps) {
             return None;
         }
         Noise::next_to(&self.raw, &found.transfer, WHITENING_MAX, Some(self.noise))
@@ -170,8 +169,7 @@ impl Stage<'_> {
         let long = self.data.head(CHOSEN);
         let plain = as_it_is(&long, &found.transfer)?;
         let left = residuals(&long, &plain)?;
-        let exact = found.rest <= 1e-12 * found.power;
-        (!exact && !is_white(&left, &self.noise.taps)).then(|| Noise {
+        (!found.is_exact() && !is_white(&left, &self.noise.taps)).then(|| Noise {
             leak: self.noise.leak,
             taps: predicting(&left, WHITENING_MAX),
         })

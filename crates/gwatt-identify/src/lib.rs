@@ -66,6 +66,7 @@ mod places;
 mod polynomial;
 mod power_log;
 mod prepared;
+mod preset;
 mod quality;
 
 mod recording;
@@ -98,6 +99,7 @@ pub use judgement::Judgement;
 pub use noise::Whiteness;
 pub use peak_factor::PeakFactor;
 pub use polynomial::roots;
+pub use preset::Preset;
 pub use recording::{ReadAs, Recording, Signal};
 pub use spectrum::{FrequencyResponse, measure};
 pub use state_space::{Measured, Sampled, Simulation, simulate};

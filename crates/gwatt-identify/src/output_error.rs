@@ -59,8 +59,10 @@ pub struct Estimate {
     /// Samples that they were made of.
     pub samples: usize,
     /// Sum of squares of the output: the model's differences count as no less
-    /// than rounding leaves of it.
+    /// than a share of it.
     pub power: f64,
+    /// That share.
+    pub floor: f64,
     /// Parameters that were fitted, offset and first state left out.
     pub count: usize,
     /// What the criterion charges for besides parameters.
@@ -79,14 +81,24 @@ impl Estimate {
     /// Bayes' information criterion with its [`charge()`]; the smaller, the better.
     #[must_use]
     pub fn criterion(&self) -> f64 {
-        criterion(self.rest, self.power, self.rows, self.count, self.samples) + self.charge
+        let least = self.floor * self.power;
+        criterion(self.rest, least, self.rows, self.count, self.samples) + self.charge
+    }
+
+    /// Whether nothing is left that another model could explain.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        self.rest <= self.floor.max(EXACT) * self.power
     }
 
     /// Akaike's criterion: the smaller, the likelier, whatever is rare.
     #[must_use]
     pub fn likelihood(&self) -> f64 {
         let n = self.rows as f64;
-        let rest = self.rest.max(ROUNDING * self.power).max(f64::MIN_POSITIVE);
+        let rest = self
+            .rest
+            .max(self.floor * self.power)
+            .max(f64::MIN_POSITIVE);
         n * libm::log(rest / n) + 2.0 * self.count as f64
     }
 
@@ -97,12 +109,16 @@ impl Estimate {
     }
 }
 
-/// The share of a signal that counts as rounding.
+/// The share of a signal that counts as rounding, and the one that is as good as nothing.
 const ROUNDING: f64 = 1e-14;
+const EXACT: f64 = 1e-12;
+/// The same next to friction: whatever it does besides being viscous and Coulomb friction is
+/// more than that, and no mode of the axis.
+const FRICTION: f64 = 1e-6;
 
-fn criterion(rest: f64, power: f64, rows: usize, count: usize, samples: usize) -> f64 {
+fn criterion(rest: f64, least: f64, rows: usize, count: usize, samples: usize) -> f64 {
     let n = rows as f64;
-    let rest = rest.max(ROUNDING * power).max(f64::MIN_POSITIVE);
+    let rest = rest.max(least).max(f64::MIN_POSITIVE);
     n * libm::log(rest / n) + count as f64 * libm::log(samples as f64)
 }
 
@@ -211,6 +227,11 @@ impl<'a> Fitting<'a> {
             delay_is_free,
             period_s: raw.period_s,
             friction: raw.friction.len(),
+            floor: if raw.friction.is_empty() {
+                ROUNDING
+            } else {
+                FRICTION
+            },
             from_command: raw.from_command,
             power: self.power,
             effort,
@@ -275,6 +296,8 @@ struct Task<'a> {
     period_s: f64,
     /// Terms of friction.
     friction: usize,
+    /// Which share of the output counts as nothing where models are compared.
+    floor: f64,
     from_command: bool,
     /// Sum of squares of the output.
     power: f64,
@@ -358,7 +381,8 @@ impl Task<'_> {
     /// How far a place is from the criterion that is to be beaten.
     fn missing(&self, at: &Place) -> f64 {
         let (rows, count) = (at.normal.rows, self.count(&at.transfer));
-        criterion(at.least, self.power, rows, count, self.samples) + self.charge(&at.transfer)
+        let least = self.floor * self.power;
+        criterion(at.least, least, rows, count, self.samples) + self.charge(&at.transfer)
             - self.effort.to_beat
     }
 
@@ -395,6 +419,7 @@ impl Task<'_> {
             rows: normal.rows,
             samples: self.samples,
             power: self.power,
+            floor: self.floor,
             count,
             steps,
             offset,

@@ -5,6 +5,7 @@ use std::io::Read;
 use super::column::{Kind, Meaning, Quantity, Reading, axis_of, read, units_of};
 use super::column_map::MappedColumn;
 use super::error::{IdentifyError, Outcome};
+use super::preset::Preset;
 use super::rows::{Lines, Rows, no_number};
 use super::sampling::even;
 
@@ -48,6 +49,8 @@ pub struct ReadAs {
     pub map: Vec<MappedColumn>,
     /// Samples a second, for a recording without times.
     pub rate_hz: Option<f64>,
+    /// The layout of a maker that it has.
+    pub preset: Option<Preset>,
 }
 
 impl Recording {
@@ -70,7 +73,20 @@ impl Recording {
     ///
     /// Anything that keeps the data from being used, with what to do.
     pub fn read_as(input: impl Read, how: &ReadAs) -> Outcome<Self> {
-        let mut rows = Rows::open(input)?;
+        let Some(preset) = how.preset else {
+            return Self::of_rows(Rows::open(input)?, how);
+        };
+        let table = preset.open(input)?;
+        let mut map = preset.columns(&table.names, how.axis, &how.map)?;
+        map.extend_from_slice(&how.map);
+        let how = ReadAs { map, ..how.clone() };
+        let rows = Rows::named(table.names, table.text, table.before);
+        let mut recording = Self::of_rows(rows, &how)?;
+        recording.ignored.extend(table.ignored);
+        Ok(recording)
+    }
+
+    fn of_rows<R: Read>(mut rows: Rows<R>, how: &ReadAs) -> Outcome<Self> {
         let (columns, ignored) = columns(&rows.names, how)?;
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
         let mut lines = Lines::default();

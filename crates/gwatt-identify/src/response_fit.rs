@@ -37,8 +37,10 @@ const DAMPING: Damping = Damping {
     least: 1e-12,
     most: 1e6,
 };
-/// An improvement below this share of one row's squares ends the search.
+/// An improvement below this share of one row's squares ends the search; in the last fit
+/// none that depends on the way to it, and so on units, may be left.
 const ENOUGH: f64 = 1e-4;
+const ENOUGH_LAST: f64 = 1e-10;
 
 /// A model with its misfit.
 #[derive(Debug, Clone)]
@@ -262,7 +264,12 @@ impl Descending for Task<'_> {
     }
 
     fn is_enough(&self, _: usize, (before, _): &Self::Place, (after, _): &Self::Place) -> bool {
-        before.total - after.total < ENOUGH * after.total / after.rows as f64
+        let enough = if self.steps == STEPS_LAST {
+            ENOUGH_LAST
+        } else {
+            ENOUGH
+        };
+        before.total - after.total < enough * after.total / after.rows as f64
     }
 }
 

@@ -23,6 +23,27 @@ pub struct Rows<R> {
     lines_before: u64,
 }
 
+impl Rows<std::io::Empty> {
+    /// Rows that were taken out of another layout: numbers with tabs between them, after so
+    /// many lines.
+    #[must_use]
+    pub fn named(names: Vec<String>, numbers: String, lines_before: u64) -> Self {
+        let text = csv::ReaderBuilder::new()
+            .delimiter(b'\t')
+            .trim(csv::Trim::All)
+            .flexible(true)
+            .has_headers(false)
+            .from_reader(Cursor::new(numbers.into_bytes()).chain(std::io::empty()));
+        Self {
+            text,
+            names,
+            record: csv::ByteRecord::new(),
+            separator: b'\t',
+            lines_before,
+        }
+    }
+}
+
 impl<R: Read> Rows<R> {
     /// Opens a file and reads its names: the last line before the numbers, with units
     /// where they have a line of their own. Columns are separated by commas, semicolons

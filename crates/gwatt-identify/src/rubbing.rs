@@ -47,17 +47,38 @@ pub(super) struct Rubbing {
     pub(super) about: Vec<f64>,
 }
 
-/// The speed at each sample. Of an acceleration there are two: as it is summed up from
-/// rest, and so that the axis ends as it began, which takes off what a sensor adds.
-fn speeds(recording: &Recording) -> Vec<Vec<f64>> {
+/// The speed at each sample.
+struct Speed {
+    /// What viscous friction goes with: what noise adds is little next to what it adds to the
+    /// acceleration.
+    plain: Vec<f64>,
+    /// What Coulomb friction goes with: noise would turn its sign.
+    smooth: Vec<f64>,
+}
+
+impl Speed {
+    fn alone(plain: Vec<f64>) -> Self {
+        Self {
+            smooth: plain.clone(),
+            plain,
+        }
+    }
+}
+
+/// The speed. Of an acceleration there are two: as it is summed up from rest, and so that the
+/// axis ends as it began, which takes off what a sensor adds.
+fn speeds(recording: &Recording) -> Vec<Speed> {
     let t = recording.period_s;
     let values = |quantity| recording.get(quantity).map(|signal| &signal.values);
     let smooth = |x: &[f64]| low_pass(x, SMOOTH / t, t);
     if let Some(velocity) = values(Quantity::Velocity) {
-        return vec![smooth(velocity)];
+        return vec![Speed {
+            smooth: smooth(velocity),
+            plain: velocity.clone(),
+        }];
     }
     if let Some(position) = values(Quantity::Position) {
-        return vec![derivative(&smooth(position), t)];
+        return vec![Speed::alone(derivative(&smooth(position), t))];
     }
     let Some(acceleration) = values(Quantity::Acceleration) else {
         return Vec::new();
@@ -71,7 +92,7 @@ fn speeds(recording: &Recording) -> Vec<Vec<f64>> {
                 sum += t * (0.5 * pair.iter().sum::<f64>() - bias);
                 sum
             });
-            std::iter::once(0.0).chain(steps).collect()
+            Speed::alone(std::iter::once(0.0).chain(steps).collect())
         })
         .collect()
 }
@@ -106,7 +127,7 @@ impl Rubbing {
     /// or motion.
     pub(super) fn of(recording: &Recording) -> Option<Self> {
         let tried = speeds(recording).into_iter().filter_map(|speed| {
-            let solved = slow(recording, &speed)?;
+            let solved = slow(recording, &speed.smooth)?;
             let left: f64 = solved.residuals.iter().flatten().map(|x| x * x).sum();
             Some((left, solved, speed))
         });
@@ -138,7 +159,7 @@ impl Rubbing {
         Some(out)
     }
 
-    fn add(&mut self, term: Term, speed: &[f64], about: f64) {
+    fn add(&mut self, term: Term, speed: &Speed, about: f64) {
         self.terms.push(term);
         self.inputs.push(term.input(speed));
         self.about.push(about);
@@ -215,13 +236,14 @@ fn slow(recording: &Recording, speed: &[f64]) -> Option<Solved> {
 }
 
 impl Term {
-    fn input(self, speed: &[f64]) -> Vec<f64> {
+    fn input(self, speed: &Speed) -> Vec<f64> {
         match self {
-            Self::Viscous => between(speed, |a, b| 0.5 * (a + b)),
-            Self::Coulomb => between(speed, mean_sign),
+            Self::Viscous => between(&speed.plain, |a, b| 0.5 * (a + b)),
+            Self::Coulomb => between(&speed.smooth, mean_sign),
             Self::Drift => {
-                let n = speed.len().max(1) as f64;
-                (0..speed.len()).map(|k| k as f64 / n).collect()
+                let samples = speed.plain.len();
+                let n = samples.max(1) as f64;
+                (0..samples).map(|k| k as f64 / n).collect()
             }
         }
     }

@@ -142,8 +142,7 @@ fn choose(
             timed((on_long, found), data, given, (others, step_s));
         let found = on_long.settled(found)?;
         let left = residuals(&long, &found)?;
-        let exact = found.rest <= 1e-12 * found.power;
-        let is_settled = exact || is_white(&left, taps);
+        let is_settled = found.is_exact() || is_white(&left, taps);
         best = Some(Chosen {
             found,
             delay_is_free,

@@ -4,6 +4,7 @@
 use super::candidate_models::{Given, are_alike, neighbours, restarts};
 use super::certainty;
 use super::output_error::{Effort, Estimate, Fitting};
+use super::parameters::parameters;
 use super::spectrum::FrequencyResponse;
 use super::transfer::{Factor, TransferFunction};
 
@@ -148,7 +149,10 @@ impl Ladder<'_> {
                 if left == 0 {
                     break;
                 }
-                if tried.iter().any(|other| are_alike(other, &start))
+                // What explains all is explained no better by more.
+                let is_more = best.is_exact() && parameters(&start, false).len() > best.count;
+                if is_more
+                    || tried.iter().any(|other| are_alike(other, &start))
                     || lacks(&start, &needed)
                     || !self.is_possible(&start)
                 {

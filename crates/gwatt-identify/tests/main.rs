@@ -2,6 +2,9 @@
 
 mod coverage;
 mod effects;
-mod sweep;
+mod presets;
 mod simulated;
 mod sticking;
+mod sweep;
+mod tuned;
+mod units;
