@@ -68,6 +68,7 @@ pub(super) fn refused_g_name(number: u16) -> &'static str {
         500..=519 => "scaling",
         520 => "a local coordinate system",
         650..=670 => "a macro call",
+        682..=684 => "a tilted work plane",
         680..=699 => "coordinate rotation",
         700..=799 | 801..=899 => "a canned cycle",
         960 | 970 => "constant surface speed",
