@@ -78,7 +78,7 @@ fn what_cannot_be_is_refused() {
     ];
     let found: Vec<String> = cases.into_iter().map(refused).collect();
     assert_snapshot!(found.join("\n"), @r"
-7 lathe-cycle: G70 to G72: without Q, the number of the contour's subroutine
+7 lathe-cycle: G70 to G72: without Q, the number of the contour's subroutine; inches are G20 here, millimetres G21
 7 no-such-subprogram: there is no subprogram O7
 7 lathe-cycle: G70 to G72: the cycle outside of G18
 7 lathe-cycle: G70 to G72: the depth of cut I must be above 0, the retraction R not below it

@@ -421,7 +421,7 @@ pub(super) const MARKS: [Mark; 64] = [
         line.g(&[500]) && line.has_letter(b'S')
     }),
     mark("G92 with S", &["fanuc-lathe-b"], 4, |line| {
-        line.g(&[920]) && line.has_letter(b'S')
+        line.g(&[920]) && line.has_letter(b'S') && !line.has_letter(b'Y')
     }),
     mark(
         "a turning cycle (G70 to G73 with P and Q)",

@@ -47,6 +47,7 @@ fn each_controller_has_its_marks() {
         "#set param in line 1",
     );
     is("VC1=5\n", "okuma okuma-lathe", "VC variables in line 1");
+    is("G92 X0 S1200\n", "fanuc-lathe-b", "G92 with S in line 1");
     is(
         "G15 H1\nCALL OABC\n",
         "okuma",

@@ -27,6 +27,7 @@ pub(super) struct Circumstances {
     feed_mode: FeedMode,
     mm_per_unit: f64,
     feed_accel_mm_s2: AxisValues,
+    unsure_unit: bool,
     motion: Motion,
 }
 
@@ -38,6 +39,7 @@ impl Circumstances {
             feed_mode: modal.feed_mode,
             mm_per_unit: modal.mm_per_unit,
             feed_accel_mm_s2: interpreter.knobs().feed_accel_mm_s2,
+            unsure_unit: interpreter.knobs().unsure_unit,
             motion: modal.motion,
         }
     }
@@ -75,6 +77,7 @@ impl<'m> Adviser<'m> {
             return NEIGHBOURS_HELP.to_owned();
         }
         let per_minute = at.feed_mode == FeedMode::PerMinute;
+        let printer = &self.machine.controller.language.printer;
         let permit = Permit {
             edit: true,
             feed_word: per_minute,
@@ -82,7 +85,7 @@ impl<'m> Adviser<'m> {
             exact_stop: false,
             stands: mv.path_mode == crate::machine::PathMode::ExactStop,
             line_before: true,
-            knobs: !at.compensates,
+            knobs: !at.compensates && !at.unsure_unit,
             apart: false,
             stop_word: false,
             levels: !at.compensates,
@@ -93,7 +96,7 @@ impl<'m> Adviser<'m> {
             reason: "",
             reason_help: "",
             mm_per_unit: at.mm_per_unit,
-            knob_mm_per_unit: at.mm_per_unit,
+            knob_mm_per_unit: printer.limit_unit(at.mm_per_unit),
             feed_before: None,
             positions: positions(self.machine, at.motion, mv),
             feed_accel_mm_s2: at.feed_accel_mm_s2,

@@ -223,6 +223,9 @@ impl Entry {
             .knobs
             .as_ref()
             .is_some_and(|it| it.knows_levels(machine));
+        // What the program has set could not be put back.
+        let unsure_unit = self.knobs.as_ref().is_some_and(|it| it.unsure_unit);
+        let printer = &machine.controller.language.printer;
         let may_stop = self.between_stops(machine) && self.may_stop_exactly(machine);
         let blended_rapid = mv.kind == MoveKind::Rapid && mv.path_mode == PathMode::LookAhead;
         Permit {
@@ -234,7 +237,7 @@ impl Entry {
             levels: !facts.compensated && knows_levels,
             rests: !facts.compensated && (stops || stopping && self.moves == 1),
             line_before: !facts.compensated,
-            knobs: !facts.compensated,
+            knobs: !facts.compensated && !unsure_unit,
             apart: self.apart,
             stop_word: machine.controller.language.exact_stop_word.is_some()
                 && self.takes_stop_word(machine, skips),
@@ -242,7 +245,7 @@ impl Entry {
             reason: reason_text,
             reason_help,
             mm_per_unit: facts.feed_mm_per_unit,
-            knob_mm_per_unit: self.mm_per_unit_before,
+            knob_mm_per_unit: printer.limit_unit(self.mm_per_unit_before),
             feed_before: self.feed_before(),
             positions: self.positions(machine, mv),
             feed_accel_mm_s2,

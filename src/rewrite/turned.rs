@@ -85,7 +85,7 @@ impl<'m> Turned<'m> {
             }
             if let Some(words) = knob_line::lines(self.machine, knob, &values) {
                 lines.extend(self.switch_on(knob, in_force));
-                lines.extend(words);
+                lines.extend(self.in_unit(words, in_force));
                 self.knobs.retain(|(turned, _)| *turned != knob);
                 self.knobs.push((knob, values));
             }
@@ -178,6 +178,8 @@ impl<'m> Turned<'m> {
             let value = if value > 0.0 { tidy(value) } else { value };
             return knob_line::lines(self.machine, knob, &[value; AXES]);
         }
+        let printer = &self.machine.controller.language.printer;
+        let unit = printer.limit_unit(in_force.mm_per_unit);
         let mut values = [0.0; AXES];
         for axis in self.machine.axis_set.iter() {
             let Some(axis_data) = &self.machine.axes[axis] else {
@@ -198,12 +200,23 @@ impl<'m> Turned<'m> {
                     } else {
                         own
                     };
-                    data.unit.speed_value(axis_data, own, in_force.mm_per_unit)
+                    data.unit.speed_value(axis_data, own, unit)
                 }
-                _ => data.unit.value(axis_data, accel, in_force.mm_per_unit),
+                _ => data.unit.value(axis_data, accel, unit),
             });
         }
-        knob_line::lines(self.machine, knob, &values)
+        let lines = knob_line::lines(self.machine, knob, &values)?;
+        Some(self.in_unit(lines, in_force))
+    }
+
+    /// Lines of a knob that are clear in millimetres alone, between G21 and G20.
+    fn in_unit(&self, mut lines: Vec<String>, in_force: InForce<'_>) -> Vec<String> {
+        let printer = &self.machine.controller.language.printer;
+        if printer.limit_unit(in_force.mm_per_unit) != in_force.mm_per_unit {
+            lines.insert(0, "G21".to_owned());
+            lines.push("G20".to_owned());
+        }
+        lines
     }
 }
 

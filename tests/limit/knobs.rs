@@ -24,6 +24,33 @@ fn isg_acceleration() {
     );
 }
 
+/// After G20 some versions of RepRapFirmware take M201 in mm, others in inches: it stands
+/// after G21. 1181 in/min are 0.49996 m/s, of 500 kg with 4 m/s² 1000 W.
+#[test]
+fn limits_of_reprapfirmware_in_inch_programs() {
+    const REPRAP: Rig = Rig {
+        controller: "reprap",
+        rest: EXACT_STOP,
+        ..RIG
+    };
+    let program = "G20\nG1 X16 F1181\nG1 X15 F40\nG1 X0 F40\nM400\n";
+    let accel = REPRAP.strategy(Strategy::Accel);
+    let text = accel.fits(program);
+    assert!(text.starts_with("G20\nG21\nM201 X4000 Y"), "{text}");
+    assert!(text.contains("\nG21\nM201 X5000 Y5000\nG20\n"), "{text}");
+    assert_eq!(
+        text.matches("M201").count(),
+        text.matches("G21\nM201").count()
+    );
+    assert_eq!(accel.fits(&text), text);
+    // What the program sets in inches could not be put back.
+    let own = format!("G20\nM201 X196 Y196\n{}", &program[4..]);
+    assert!(!accel.reasons(&own).is_empty());
+    let text = REPRAP.fits(&own);
+    assert_eq!(text.matches("M201").count(), 1, "{text}");
+    assert!(!text.contains("G21"), "{text}");
+}
+
 #[test]
 fn isg_rapid_speed_and_feed() {
     assert_eq!(

@@ -15,6 +15,8 @@ fn speed_limits_of_axes() {
     4 feed X30.000>0.000 v20.000
     ");
     assert_snapshot!(reprap("M203 X1200\nG1 X30 F60000\n"), @"2 feed X0.000>30.000 v20.000");
+    // S1: mm/s.
+    assert_snapshot!(reprap("M203 S1 X20\nG1 X30 F60000\n"), @"2 feed X0.000>30.000 v20.000");
     assert_snapshot!(klipper("M203 X1200\nG1 X30 F6000\n"), @"2 feed X0.000>30.000 v100.000 a1000");
     // Marlin M205 S: no move that extrudes is slower.
     assert_snapshot!(marlin("M205 S20 T0 X8\nG1 X1 E1 F600\nG1 X2\n"), @r"

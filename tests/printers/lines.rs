@@ -66,6 +66,32 @@ fn several_commands_on_a_line() {
     ");
 }
 
+/// Marlin and RepRapFirmware look for each letter; Klipper reads one parameter `XY`.
+#[test]
+fn letters_without_a_blank_between_them() {
+    for run in [marlin, reprap] {
+        assert_eq!(run("G28 XY\nG1 X1 F600\n"), run("G28 X Y\nG1 X1 F600\n"));
+        assert!(run("G28 XW\n").contains("unknown-text"));
+    }
+    assert!(klipper("G28 XY\n").contains("unknown-text"));
+}
+
+/// What a printer of Prusa and a macro of RepRapFirmware hold that moves nothing.
+#[test]
+fn words_of_one_firmware_that_move_nothing() {
+    let moved = "G1 X30 F600\n";
+    let plain = marlin(moved).replacen('1', "3", 1);
+    assert_eq!(
+        marlin(&format!("M555 X163 Y161 W36 H36\nM142 S36\n{moved}")),
+        plain
+    );
+    let plain = reprap(moved).replacen('1', "2", 1);
+    assert_eq!(
+        reprap(&format!("echo \"G1 X9: \"^move.axes[0].max\n{moved}")),
+        plain
+    );
+}
+
 /// Klipper, "G-Codes": names without motion pass; macros of the machine and
 /// RepRapFirmware's meta commands are refused by name.
 #[test]

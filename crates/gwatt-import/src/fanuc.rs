@@ -108,7 +108,7 @@ fn path(parameters: &Parameters<'_>, found: &mut Found, log: &mut Log) {
         );
     }
     let inch = parameters.inch();
-    let of_axes: Vec<Figure> = parameters.figures(1430, log);
+    let of_axes: Vec<Figure> = parameters.of_axes(1430, log);
     let limits = of_axes.iter().filter(|it| it.value > 0.0);
     // Each axis for itself: the path may be as fast as all together.
     let square: f64 = limits.clone().map(|it| it.value * it.value).sum();

@@ -1,7 +1,7 @@
 //! What kind of file it is, seen from its lines.
 
 use crate::text::Text;
-use crate::{fanuc, grbl, siemens, words};
+use crate::{fanuc, grbl, reprap, siemens, words};
 
 /// Kinds of settings that are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -161,7 +161,9 @@ fn printer(line: &str, marks: &mut Vec<Format>) {
     ];
     if line.contains("echo:") || code == "M205" {
         marks.push(Format::Marlin);
-    } else if line.starts_with(['M', 'm']) && only_reprap.contains(&code.as_str()) {
+    } else if reprap::include(line).is_some()
+        || line.starts_with(['M', 'm']) && only_reprap.contains(&code.as_str())
+    {
         marks.push(Format::RepRap);
     } else if matches!(code.as_str(), "M203" | "M201" | "M204") && words::is_command(line) {
         // Of both: what else stands there decides.

@@ -34,6 +34,9 @@ impl Figure {
     }
 }
 
+/// What is said of it.
+const HIGHEST: &str = ", the highest";
+
 /// The highest of several values that may hold.
 pub(crate) fn highest(figures: impl IntoIterator<Item = Figure>) -> Option<Figure> {
     let all: Vec<Figure> = figures.into_iter().collect();
@@ -45,7 +48,8 @@ pub(crate) fn highest(figures: impl IntoIterator<Item = Figure>) -> Option<Figur
     }
     let best = best?;
     let lower = all.iter().any(|other| other.value < best.value);
-    let mark = if lower { ", the highest" } else { "" };
+    let marked = best.source.ends_with(HIGHEST);
+    let mark = if lower && !marked { HIGHEST } else { "" };
     Some(Figure::new(best.value, format!("{}{mark}", best.source)))
 }
 

@@ -3,6 +3,9 @@
 //! Sources: Klipper documentation, "Configuration reference"; defaults of the extruder's own
 //! limits from `klippy/kinematics/extruder.py`.
 
+mod carriages;
+mod macros;
+
 use std::f64::consts::PI;
 
 use gwatt_machine::AxisId;
@@ -12,6 +15,7 @@ use crate::ini::{Item, Style, items, last};
 use crate::kinematics;
 use crate::near::Job;
 use crate::text::Log;
+use carriages::{Section, section_of};
 
 /// How its files are written.
 pub(crate) const STYLE: Style = Style {
@@ -36,7 +40,7 @@ pub(crate) fn include(line: &str) -> Option<&str> {
 }
 
 /// Values of the files.
-struct Config<'i, 't> {
+pub(crate) struct Config<'i, 't> {
     items: &'i [Item<'t>],
 }
 
@@ -67,8 +71,12 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
     let config = Config { items: &items };
     let mut found = Found::new("klipper", "Printer under Klipper", Build::Belts);
     kinematics_of(&config, &mut found, log);
+    let start = macros::at_start(job, log);
+    let with_start = |own: Option<Figure>, set: Option<Figure>| highest(own.into_iter().chain(set));
     let velocity = config.positive(log, "printer", "max_velocity");
+    let velocity = with_start(velocity, start.velocity);
     let accel = config.positive(log, "printer", "max_accel");
+    let accel = with_start(accel, start.accel);
     let z_velocity = config.positive(log, "printer", "max_z_velocity");
     let z_accel = config.positive(log, "printer", "max_z_accel");
     for (id, section) in AXES {
@@ -85,11 +93,12 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
         };
         axis.rapid = own(&z_velocity, &velocity).map(|it| it.times(MIN));
         axis.accel = own(&z_accel, &accel);
-        stepper(&config, axis, section, log);
+        let section = section_of(&config, id, section);
+        stepper(&config, axis, &section, log);
     }
     extruder(&config, &mut found, log, velocity.as_ref(), accel.as_ref());
     corners(&config, &mut found, log, accel.as_ref());
-    macros(&config, &mut found);
+    macros::named(&items, &mut found);
     found
 }
 
@@ -98,7 +107,8 @@ fn kinematics_of(config: &Config<'_, '_>, found: &mut Found, log: &mut Log) {
         return;
     };
     match item.value {
-        "cartesian" | "generic_cartesian" => {}
+        "cartesian" => {}
+        "generic_cartesian" => carriages::kinematics_of(config, found, log),
         "corexy" | "corexz" | "hybrid_corexy" | "hybrid_corexz" => {
             kinematics::core(found, log, &item.place, item.whole);
         }
@@ -107,7 +117,8 @@ fn kinematics_of(config: &Config<'_, '_>, found: &mut Found, log: &mut Log) {
 }
 
 /// Travel, homing and transmission of an axis.
-fn stepper(config: &Config<'_, '_>, axis: &mut FoundAxis, section: &str, log: &mut Log) {
+fn stepper(config: &Config<'_, '_>, axis: &mut FoundAxis, of: &Section, log: &mut Log) {
+    let section = of.carriage.as_str();
     let min = config.number(log, section, "position_min");
     let max = config.number(log, section, "position_max");
     if let Some(max) = &max {
@@ -134,8 +145,9 @@ fn stepper(config: &Config<'_, '_>, axis: &mut FoundAxis, section: &str, log: &m
         axis.comments
             .push(format!("Its endstop is a probe, {note}."));
     }
-    if let Some(turn) = config.positive(log, section, "rotation_distance") {
-        let gear = last(config.items, section, "gear_ratio");
+    let drive = of.steppers.first().map_or(section, String::as_str);
+    if let Some(turn) = config.positive(log, drive, "rotation_distance") {
+        let gear = last(config.items, drive, "gear_ratio");
         let gear = gear.map_or(String::new(), |it| format!(", {}", it.source()));
         axis.drive.push(format!(
             "Travel of a revolution: {} mm, {}{gear}",
@@ -143,8 +155,7 @@ fn stepper(config: &Config<'_, '_>, axis: &mut FoundAxis, section: &str, log: &m
             turn.source
         ));
     }
-    let more = (1..16).filter(|number| config.has(&format!("{section}{number}")));
-    axis.motors = 1 + more.count();
+    axis.motors = of.steppers.len();
 }
 
 /// The extruder. Its own limits hold for moves of the extruder alone; next to the axes it
@@ -278,25 +289,5 @@ fn retract(config: &Config<'_, '_>, found: &mut Found, log: &mut Log) {
             shown(back)
         );
         found.language(field, "[firmware_retraction]");
-    }
-}
-
-/// Programs call macros, whose commands stand in the configuration.
-fn macros(config: &Config<'_, '_>, found: &mut Found) {
-    let mut names: Vec<String> = Vec::new();
-    for item in config.items {
-        if let Some(name) = item.section.strip_prefix("gcode_macro ") {
-            let name = name.trim().to_ascii_uppercase();
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-    }
-    if !names.is_empty() {
-        let list = names.join(", ");
-        found.remarks.push(format!(
-            "Macros ({list}): what a program calls of them is written into a file of its name, or \
-             listed under `ignored_macros` or `unknown_moves` in [language]"
-        ));
     }
 }

@@ -13,7 +13,7 @@ use crate::found::{Build, Figure, Found, entry, highest, shown};
 use crate::ini::{Item, Style, items, last};
 use crate::kinematics;
 use crate::near::{Job, Near};
-use crate::text::{File, Log};
+use crate::text::{File, Log, Place};
 use hal::Hal;
 
 /// How its files are written.
@@ -82,24 +82,23 @@ pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
     if let Some(name) = last(&items, "EMC", "MACHINE").filter(|it| !it.value.is_empty()) {
         name.value.clone_into(&mut found.name);
     }
-    let files: Vec<File> = items
-        .iter()
-        .filter(|it| {
-            it.section == "HAL" && matches!(it.key.as_str(), "HALFILE" | "POSTGUI_HALFILE")
-        })
-        .filter_map(|it| it.value.split_whitespace().next())
-        .filter(|name| !name.starts_with("LIB:") && is_hal(name))
-        .flat_map(|name| near.files(job.name(), name))
-        .collect();
+    let scripts = hal_files(&items, job, near, log);
     let linear = units(&items, log, "LINEAR_UNITS");
     let angular = units(&items, log, "ANGULAR_UNITS");
     let config = Config {
         items,
         linear,
         angular,
-        hal: Hal::new(&files, log),
+        hal: Hal::new(scripts.iter().filter(|file| is_hal(&file.name)), log),
     };
     kinematics_of(&config, &mut found, log);
+    let named = last(&config.items, "KINS", "KINEMATICS");
+    let named = named.and_then(|it| it.value.split_whitespace().next());
+    for module in hal::modules(&scripts) {
+        if named != Some(module.name.as_str()) {
+            module.take(&mut found, log);
+        }
+    }
     for (id, joints) in coordinates(&config) {
         axis(&config, &mut found, log, id, &joints);
     }
@@ -112,6 +111,33 @@ pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
         }
     }
     found
+}
+
+/// The files of HAL that are there. Where the INI file does not name the kinematics (up to
+/// 2.7, Machinekit), one that is missing may.
+fn hal_files(items: &[Item<'_>], job: &Job, near: &dyn Near, log: &mut Log) -> Vec<File> {
+    let named = last(items, "KINS", "KINEMATICS").is_some();
+    let mut files = Vec::new();
+    for item in items {
+        let is_file = matches!(item.key.as_str(), "HALFILE" | "POSTGUI_HALFILE");
+        let name = item.value.split_whitespace().next();
+        let Some(name) = name.filter(|_| item.section == "HAL" && is_file) else {
+            continue;
+        };
+        let mut found = Vec::new();
+        if !name.starts_with("LIB:") {
+            found = near.files(job.name(), name);
+        }
+        if found.is_empty() && item.key == "HALFILE" && !named {
+            let message =
+                format!("`{name}` was not found, which may load kinematics other than trivkins");
+            let help = "each axis counts as driven by its own joint: see its `loadrt` lines, or put it where \
+                        the line says";
+            log.warning(&item.place, message, help);
+        }
+        files.extend(found);
+    }
+    files
 }
 
 /// Scripts in Tcl are no lists of settings.
@@ -147,10 +173,16 @@ fn kinematics_of(config: &Config<'_>, found: &mut Found, log: &mut Log) {
     let Some(item) = last(&config.items, "KINS", "KINEMATICS") else {
         return;
     };
-    match item.value.split_whitespace().next().unwrap_or("") {
-        "trivkins" | "" => {}
-        "corexykins" => kinematics::core(found, log, &item.place, item.whole),
-        other => kinematics::refuse(log, &item.place, other),
+    let name = item.value.split_whitespace().next().unwrap_or("");
+    by_name(name, item.whole, &item.place, found, log);
+}
+
+/// What a module of kinematics makes of the machine. `gantrykins` gives axes several joints.
+fn by_name(name: &str, whole: &str, place: &Place<'_>, found: &mut Found, log: &mut Log) {
+    match name {
+        "trivkins" | "gantrykins" | "" => {}
+        "corexykins" => kinematics::core(found, log, place, whole),
+        other => kinematics::refuse(log, place, other),
     }
 }
 
@@ -193,12 +225,21 @@ fn axis(config: &Config<'_>, found: &mut Found, log: &mut Log, id: AxisId, joint
         .item(&sections, "TYPE")
         .map(|it| it.value.to_ascii_uppercase());
     let by_letter = matches!(id, AxisId::A | AxisId::B | AxisId::C);
-    let rotary = kind.map_or(by_letter, |kind| kind == "ANGULAR");
-    let unit = if rotary {
-        config.angular
-    } else {
-        config.linear
+    let angular = kind.map_or(by_letter, |kind| kind == "ANGULAR");
+    // For the interpreter X to Z and U to W are lengths, whatever drives them.
+    let odd = angular && !by_letter;
+    let rotary = angular && by_letter;
+    let unit = match (odd, rotary) {
+        (true, _) => config.linear.max(config.angular),
+        (_, true) => config.angular,
+        _ => config.linear,
     };
+    if let Some(item) = config.item(&sections, "TYPE").filter(|_| odd) {
+        let message = format!("{letter} is a length in programs, and its joint is ANGULAR");
+        let help =
+            "it counts as linear, a degree as a millimetre: give its mass as its drive feels it";
+        log.warning(&item.place, message, help);
+    }
     let mut rapid = config.positive(log, &sections, "MAX_VELOCITY", unit * MIN);
     let accel = config.positive(log, &sections, "MAX_ACCELERATION", unit);
     // The path is never faster, and so is none of its axes.

@@ -1,23 +1,23 @@
 //! Marlin: `Configuration.h` and `Configuration_adv.h`.
 //!
 //! Which of the compiler's branches hold is not followed: of several values of a name the
-//! highest counts. Source: the files' own comments, and Marlin's `planner.cpp` for
+//! highest counts, and of several places none. Source: the files' own comments, and Marlin's `planner.cpp` for
 //! `S_CURVE_ACCELERATION`, whose speed over time is the quintic `6t⁵ − 15t⁴ + 10t³`: its
 //! steepest slope, at the middle, is 15/8 of the mean.
 
+mod defines;
+
 use gwatt_machine::{ALL_AXES, AxisId};
 
-use crate::expression;
 use crate::found::{Build, Figure, Found, FoundAxis, entry, highest, shown};
 use crate::kinematics;
 use crate::marlin::classic;
 use crate::near::Job;
-use crate::text::{Log, Place};
+use crate::text::Log;
+use defines::{Define, Defines};
 
 /// Steepest slope of the S-curve by its mean.
 const S_CURVE: f64 = 1.875;
-/// Names refer to each other no deeper than this.
-const DEPTH: u32 = 16;
 
 /// Other kinematics than Cartesian and Core.
 const OTHERS: [&str; 9] = [
@@ -31,129 +31,6 @@ const OTHERS: [&str; 9] = [
     "SCARA",
     "FOAMCUTTER_XYUV",
 ];
-
-/// A `#define` that is in force.
-struct Define<'t> {
-    name: &'t str,
-    value: &'t str,
-    whole: &'t str,
-    place: Place<'t>,
-}
-
-impl Define<'_> {
-    fn source(&self) -> String {
-        self.place
-            .source(self.whole.trim_start_matches("#define").trim())
-    }
-}
-
-/// All defines.
-struct Defines<'t> {
-    list: Vec<Define<'t>>,
-    /// Names that stand there commented out.
-    off: Vec<&'t str>,
-}
-
-impl<'t> Defines<'t> {
-    fn new(job: &'t Job) -> Self {
-        let mut found = Self {
-            list: Vec::new(),
-            off: Vec::new(),
-        };
-        for (_, place) in job.places() {
-            let line = place.line().trim();
-            if let Some(rest) = line.strip_prefix("//") {
-                let rest = rest.trim_start().strip_prefix("#define ");
-                found
-                    .off
-                    .extend(rest.and_then(|rest| rest.split_whitespace().next()));
-                continue;
-            }
-            let code = line.split("//").next().unwrap_or(line);
-            let code = code.split("/*").next().unwrap_or(code).trim_end();
-            let Some(rest) = code.strip_prefix("#define") else {
-                continue;
-            };
-            let Some(rest) = rest.strip_prefix([' ', '\t']).map(str::trim_start) else {
-                continue;
-            };
-            let (name, value) = rest.split_once([' ', '\t']).unwrap_or((rest, ""));
-            let value = value.trim();
-            found.list.push(Define {
-                name,
-                value,
-                whole: code,
-                place: place.of(if value.is_empty() { name } else { value }),
-            });
-        }
-        found
-    }
-
-    fn all<'d>(&'d self, name: &'d str) -> impl Iterator<Item = &'d Define<'t>> {
-        self.list.iter().filter(move |define| define.name == name)
-    }
-
-    fn is_on(&self, name: &str) -> bool {
-        self.all(name)
-            .next()
-            .is_some_and(|it| it.value != "false" && it.value != "0")
-    }
-
-    /// The value of an expression.
-    fn eval(&self, text: &str, depth: u32) -> Option<f64> {
-        if depth > DEPTH {
-            return None;
-        }
-        let name = |name: &str, depth: u32| {
-            let values = self.all(name).filter_map(|it| self.eval(it.value, depth));
-            values.fold(None, |best: Option<f64>, value| {
-                Some(best.map_or(value, |best| best.max(value)))
-            })
-        };
-        expression::value(text, &name, depth)
-    }
-
-    /// The highest value of a name; reports one that cannot be read.
-    fn figure(&self, log: &mut Log, name: &str) -> Option<Figure> {
-        let mut list = Vec::new();
-        for define in self.all(name) {
-            match self.eval(define.value, 0) {
-                Some(value) => list.push(Figure::new(value, define.source())),
-                None => unreadable(log, define),
-            }
-        }
-        highest(list)
-    }
-
-    /// The entries of lists in braces; several where several branches have one.
-    fn lists(&self, log: &mut Log, name: &str) -> Vec<(Vec<f64>, String)> {
-        let read = |inner: &str| {
-            let entries = inner.split(',').map(|entry| self.eval(entry, 0));
-            entries.collect::<Option<Vec<f64>>>()
-        };
-        let mut lists = Vec::new();
-        for define in self.all(name) {
-            let inner = define
-                .value
-                .strip_prefix('{')
-                .and_then(|it| it.strip_suffix('}'));
-            match inner.and_then(read) {
-                Some(values) => lists.push((values, define.source())),
-                None => unreadable(log, define),
-            }
-        }
-        lists
-    }
-}
-
-fn unreadable(log: &mut Log, define: &Define<'_>) {
-    let message = format!("`{}` cannot be read", define.value);
-    log.error(
-        &define.place,
-        message,
-        "write it as a number, or a sum of numbers, and import again",
-    );
-}
 
 /// Reads the configuration.
 pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
@@ -228,10 +105,7 @@ fn axes(defines: &Defines<'_>, found: &mut Found, log: &mut Log) {
     };
     put("DEFAULT_MAX_FEEDRATE", 60.0, |axis| &mut axis.rapid);
     put("DEFAULT_MAX_ACCELERATION", 1.0, |axis| &mut axis.accel);
-    let homing = defines
-        .lists(log, "HOMING_FEEDRATE_MM_M")
-        .into_iter()
-        .next();
+    let homing = defines.lists(log, "HOMING_FEEDRATE_MM_M");
     let old = [
         "HOMING_FEEDRATE_XY",
         "HOMING_FEEDRATE_XY",
@@ -242,12 +116,11 @@ fn axes(defines: &Defines<'_>, found: &mut Found, log: &mut Log) {
         .zip(old)
         .enumerate()
     {
-        let speed = match &homing {
-            Some((values, source)) => values
-                .get(at)
-                .map(|value| Figure::new(*value, source.clone())),
-            None => defines.figure(log, old),
-        };
+        let listed = homing.iter().filter_map(|(values, source)| {
+            let value = values.get(at)?;
+            Some(Figure::new(*value, source.clone()))
+        });
+        let speed = highest(listed).or_else(|| defines.figure(log, old));
         place(defines, found, log, id);
         if let Some(axis) = found.known(id) {
             axis.reference_speed = speed.filter(|it| it.value > 0.0);
@@ -305,14 +178,37 @@ fn place(defines: &Defines<'_>, found: &mut Found, log: &mut Log, id: AxisId) {
     if let (Some(min), Some(max)) = (&min, &max) {
         axis.travel(min, max, " mm");
     }
-    let end = direction.and_then(|direction| if direction.value < 0.0 { min } else { max });
-    let home = manual.or(end);
-    if probed || moved {
+    let end = direction.and_then(|direction| {
+        if direction.value < 0.0 {
+            min.map(|min| (min, "MIN_POS"))
+        } else {
+            max.map(|max| (max, "MAX_POS"))
+        }
+    });
+    let direction = defines.only(&format!("{letter}_HOME_DIR"), 0);
+    let home = match (manual, end) {
+        (Some(manual), end) => {
+            let name = format!("MANUAL_{letter}_HOME_POS");
+            // What stands in a branch may not hold.
+            let sure = end.is_none() || !defines.all(&name).any(|it| it.in_branch);
+            Some((manual, name, sure))
+        }
+        (None, Some((end, name))) => Some((end, format!("{letter}_{name}"), direction.is_some())),
+        (None, None) => None,
+    };
+    let Some((home, name, sure)) = home else {
+        return;
+    };
+    if !sure || defines.only(&name, 0).is_none() {
+        let why = format!("{name} depends on `#if`: put what holds in its place");
+        let field = format!("reference_mm = {}", shown(home.value));
+        axis.maybe.push(entry(field, why));
+    } else if probed || moved {
         let why = "not if a probe, BED_CENTER_AT_0_0 or HOMING_BACKOFF_POST_MM ends it elsewhere";
-        let home = home.map(|home| entry(format!("reference_mm = {}", shown(home.value)), why));
-        axis.maybe.extend(home);
+        let field = format!("reference_mm = {}", shown(home.value));
+        axis.maybe.push(entry(field, why));
     } else {
-        axis.reference = home;
+        axis.reference = Some(home);
     }
 }
 

@@ -5,10 +5,11 @@
 
 use gwatt_machine::AxisId;
 
+use crate::expression;
 use crate::found::{Build, Figure, Found, FoundAxis, entry, shown};
 use crate::kinematics;
 use crate::near::Job;
-use crate::text::Log;
+use crate::text::{Log, Place};
 use crate::words::{Command, Word, commands};
 
 /// Millimetres of an inch.
@@ -42,17 +43,64 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
     let mut found = Found::new("reprap", "Printer under RepRapFirmware", Build::Belts);
     let mut settings = Settings::default();
     let mut unit = 1.0;
+    let mut mode: Option<Place<'_>> = None;
     for (_, place) in job.places() {
         for command in commands(&place) {
             match command.code.as_str() {
                 "G20" => unit = INCH,
                 "G21" => unit = 1.0,
-                _ => take(&mut found, &mut settings, log, &command, unit),
+                "M451" => mode = None,
+                "M452" | "M453" => mode = Some(command.place.clone()),
+                _ => {
+                    unsure_unit(log, &command, unit);
+                    take(&mut found, &mut settings, log, &command, unit);
+                }
             }
         }
     }
+    if let Some(place) = mode {
+        log.error(
+            &place,
+            "a mode in which G0 moves as fast as M203 permits, and not at F".to_owned(),
+            "gwatt reads programs of RepRapFirmware in FFF mode (M451): powers of this machine would be too low",
+        );
+    }
     finish(&mut found, settings);
     found
+}
+
+/// Limits after G20: `GCodeBuffer.cpp` takes them in mm from 3.4 on, in inches before that.
+fn unsure_unit(log: &mut Log, command: &Command<'_>, unit: f64) {
+    let limits = ["M201", "M203", "M204", "M205", "M566"];
+    if unit != 1.0 && limits.contains(&command.code.as_str()) {
+        let message = format!(
+            "{} after G20: some versions take it in inches, others in mm; inches count",
+            command.code
+        );
+        log.warning(
+            &command.place,
+            message,
+            "write it in mm after G21, and import again",
+        );
+    }
+}
+
+/// A number, or an expression of numbers in braces.
+fn number(log: &mut Log, place: &Place<'_>, text: &str) -> Option<f64> {
+    let inner = text
+        .strip_prefix('{')
+        .and_then(|text| text.strip_suffix('}'));
+    let worked_out = inner.and_then(|text| expression::value(text, &|_, _| None, 0));
+    worked_out.or_else(|| log.number(place, text))
+}
+
+/// The same above 0.
+fn positive(log: &mut Log, place: &Place<'_>, text: &str, what: &str) -> Option<f64> {
+    let value = number(log, place, text)?;
+    if value > 0.0 {
+        return Some(value);
+    }
+    log.positive(place, &shown(value), what)
 }
 
 fn take(
@@ -63,12 +111,14 @@ fn take(
     unit: f64,
 ) {
     match command.code.as_str() {
-        "M203" => axes(found, log, command, unit, |axis| &mut axis.rapid),
+        "M203" => axes(found, log, command, unit * per_minute(command), |axis| {
+            &mut axis.rapid
+        }),
         "M201" => axes(found, log, command, unit, |axis| &mut axis.accel),
         "M204" => {
             for (letter, slot) in [('P', &mut settings.print), ('T', &mut settings.travel)] {
                 if let Some(word) = command.word(letter)
-                    && let Some(value) = log.positive(&word.place, word.text, "an acceleration")
+                    && let Some(value) = positive(log, &word.place, word.text, "an acceleration")
                 {
                     *slot = Some(Figure::new(value * unit, command.source(word)));
                 }
@@ -99,12 +149,18 @@ fn take(
     }
 }
 
+/// Minutes of the time in which M203 counts: `S1` says mm/s (`GCodes2.cpp`, case 203).
+fn per_minute(command: &Command<'_>) -> f64 {
+    let per_second = command.word('S').is_some_and(|word| word.text == "1");
+    if per_second { 60.0 } else { 1.0 }
+}
+
 /// The largest of a list of numbers, as several extruders have.
 fn largest(log: &mut Log, command: &Command<'_>, word: &Word<'_>) -> Option<Figure> {
     let mut best: Option<f64> = None;
     for piece in word.text.split(':') {
         let what = format!("{} of {}", command.code, word.letter);
-        let value = log.positive(&word.place.of(piece), piece, &what)?;
+        let value = positive(log, &word.place.of(piece), piece, &what)?;
         best = Some(best.map_or(value, |best| best.max(value)));
     }
     best.map(|best| Figure::new(best, command.source(word)))
@@ -115,7 +171,7 @@ fn step(log: &mut Log, command: &Command<'_>, word: &Word<'_>) -> Option<Figure>
     let pieces = word
         .text
         .split(':')
-        .map(|piece| log.number(&word.place.of(piece), piece));
+        .map(|piece| number(log, &word.place.of(piece), piece));
     let values: Option<Vec<f64>> = pieces.collect();
     let most = values?.into_iter().fold(0.0, f64::max);
     Some(Figure::new(most, command.source(word)))
@@ -162,7 +218,7 @@ fn limits(settings: &mut Settings, log: &mut Log, command: &Command<'_>, unit: f
         let mut values = word
             .text
             .split(':')
-            .map(|piece| log.number(&word.place.of(piece), piece));
+            .map(|piece| number(log, &word.place.of(piece), piece));
         let first = values.next().flatten().map(|value| value * unit);
         let second = values.next().flatten().map(|value| value * unit);
         let known = settings.ends.iter().position(|(other, _)| *other == id);
@@ -220,7 +276,26 @@ fn drives(found: &mut Found, settings: &mut Settings, command: &Command<'_>) {
     }
 }
 
+/// M669: whether a row of its matrix, `X1:1:0`, lets a motor move several axes.
+fn couples(command: &Command<'_>) -> bool {
+    command.words.iter().any(|word| {
+        let axis = AxisId::from_letter(word.letter as u8).filter(|id| *id != AxisId::E);
+        let Some(id) = axis.filter(|_| word.text.contains([':', '{'])) else {
+            return false;
+        };
+        let entries = word.text.split(':').enumerate();
+        let others = entries.filter(|(_, entry)| entry.parse() != Ok(0.0_f64));
+        let columns: Vec<usize> = others.map(|(column, _)| column).collect();
+        // X, Y and Z stand first, others in the order in which M584 has made them.
+        let own = |column: usize| column == id as usize || column > 2 && id as usize > 2;
+        !matches!(columns.as_slice(), [column] if own(*column))
+    })
+}
+
 fn kinematics_of(found: &mut Found, log: &mut Log, command: &Command<'_>) {
+    if command.code == "M669" && couples(command) {
+        return kinematics::refuse(log, &command.place, command.whole);
+    }
     let word = command.word('K').or_else(|| command.word('S'));
     let Some(word) = word.filter(|word| command.code == "M669" || word.letter == 'S') else {
         return;

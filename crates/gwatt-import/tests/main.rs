@@ -3,6 +3,8 @@
 mod controls;
 mod errors;
 mod firmware;
+mod kinematics;
+mod limits;
 mod robust;
 mod whole;
 

@@ -32,6 +32,8 @@ pub struct KnobState {
     pub path_speed_mm_s: f64,
     /// Largest speed of each axis, mm/s (M203); infinite where the machine's own holds.
     pub speed_mm_s: AxisValues,
+    /// The program has set limits whose unit is not known: inches count, which are more.
+    pub unsure_unit: bool,
     /// How the look-ahead planner takes corners and hills; `None`: as the profile says.
     pub square: Option<Square>,
     /// The level in force of each group of words that select one; `None`: any of them may be.
@@ -63,6 +65,7 @@ impl KnobState {
             pending: None,
             path_speed_mm_s: f64::INFINITY,
             speed_mm_s: [f64::INFINITY; AXES],
+            unsure_unit: false,
             square: None,
             levels: [None; LEVEL_GROUPS],
             base_accel_mm_s2: [accel; 2],
@@ -152,6 +155,12 @@ impl KnobState {
         for limits in [&mut self.feed_accel_mm_s2, &mut self.rapid_accel_mm_s2] {
             raise_to_path(machine, limits, accel_mm_s2);
         }
+    }
+
+    /// Notes that the program sets limits, in this unit.
+    pub(super) fn set_in(&mut self, machine: &Machine, mm_per_unit: f64) {
+        let in_mm = machine.controller.language.printer.limits_in_mm;
+        self.unsure_unit |= in_mm && mm_per_unit != 1.0;
     }
 
     /// Sets the largest speed along the path, mm/s; the machine's own takes it back.

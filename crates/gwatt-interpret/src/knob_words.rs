@@ -17,6 +17,7 @@ impl Control<'_> {
             }
             run.facts.turns_knob = true;
             let unit = self.modal.mm_per_unit;
+            self.knobs.set_in(self.machine, unit);
             let mut turned = false;
             let mut fine = true;
             let valid = |value: f64| value.is_finite() && value > 0.0;

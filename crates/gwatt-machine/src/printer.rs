@@ -17,6 +17,9 @@ pub struct Printer {
     /// mm/s in one unit of M203; `None` where M203 is not known and does
     /// nothing.
     pub speed_cap_mm_s: Option<f64>,
+    /// Whether some versions take M201, M203 and M204 in mm after G20 too, so that these
+    /// words are clear after G21 alone.
+    pub limits_in_mm: bool,
     /// Whether M204 and `SET_VELOCITY_LIMIT` set the limits of X and Y
     /// themselves (Klipper) and not only a limit along the path.
     pub velocity_limit: bool,
@@ -93,12 +96,22 @@ impl Command {
     }
 }
 
+impl Printer {
+    /// Millimetres in the unit in which limits are written by M201 and similar words, where
+    /// this is that of the program: after G20 they are written between G21 and G20.
+    #[must_use]
+    pub fn limit_unit(&self, mm_per_unit: f64) -> f64 {
+        if self.limits_in_mm { 1.0 } else { mm_per_unit }
+    }
+}
+
 impl Default for Printer {
     fn default() -> Self {
         Self {
             extruder_mode: ExtruderMode::Follows,
             several_commands: false,
             speed_cap_mm_s: Some(1.0),
+            limits_in_mm: false,
             velocity_limit: false,
             path_accel_spares: AxisSet(1 << 9),
             home_together: vec![AxisSet(0b11), AxisSet(0b100)],

@@ -23,6 +23,9 @@ pub(super) fn take(parameters: &Parameters<'_>, found: &mut Found, log: &mut Log
     let mut taken: Vec<AxisId> = Vec::new();
     for value in parameters.of(1420) {
         let index = value.index.max(1);
+        if !parameters.exists(index) {
+            continue;
+        }
         let Some(id) = letter(parameters, index, log, value) else {
             continue;
         };

@@ -80,6 +80,22 @@ impl<'t> Parameters<'t> {
         self.of(number).filter_map(read).collect()
     }
 
+    /// Whether an axis is there: one whose name (1020) is 0 is none.
+    pub(crate) fn exists(&self, index: usize) -> bool {
+        let name = self.axis(1020, index);
+        name.is_none_or(|name| name.text.parse() != Ok(0.0_f64))
+    }
+
+    /// The numbers of a parameter of the axes that are there.
+    pub(crate) fn of_axes(&self, number: u32, log: &mut Log) -> Vec<Figure> {
+        let there = self.of(number).filter(|it| self.exists(it.index));
+        let read = |value: &Value<'t>| {
+            let read = log.number(&value.place, value.text)?;
+            Some(Figure::new(read, value.source.clone()))
+        };
+        there.filter_map(read).collect()
+    }
+
     /// A bit of the first value.
     pub(crate) fn bit(&self, number: u32, bit: usize) -> Option<Bit> {
         self.bits(number, bit).into_iter().next()

@@ -1,5 +1,6 @@
 //! HAL files: what they set for step generators and encoders.
 
+use crate::found::Found;
 use crate::text::{File, Log, Text};
 
 /// Pins whose values say something of a drive.
@@ -22,7 +23,7 @@ pub(crate) struct Hal {
 
 impl Hal {
     /// Reads `setp` lines of numbers; others name values of the INI file.
-    pub(crate) fn new(files: &[File], log: &mut Log) -> Self {
+    pub(crate) fn new<'f>(files: impl Iterator<Item = &'f File>, log: &mut Log) -> Self {
         let mut notes = Vec::new();
         for file in files {
             let text = match Text::new(file) {
@@ -63,4 +64,50 @@ fn note(line: &str) -> Option<(usize, String)> {
     let kind = kind.rsplit('.').next()?;
     matches!(kind, "stepgen" | "encoder").then_some(())?;
     Some((number.parse().ok()?, format!("{what}: {value}")))
+}
+
+/// A module of kinematics that a file loads.
+pub(super) struct Module {
+    pub(super) name: String,
+    text: Text,
+    line: usize,
+}
+
+impl Module {
+    /// What it makes of the machine.
+    pub(super) fn take(&self, found: &mut Found, log: &mut Log) {
+        let place = self.text.place(self.line);
+        let whole = place.line();
+        let start = whole.find(&self.name).unwrap_or(0);
+        let name = whole.get(start..start + self.name.len()).unwrap_or(whole);
+        super::by_name(&self.name, whole.trim(), &place.of(name), found, log);
+    }
+}
+
+/// The modules of kinematics that files of HAL load, each once: their names end in `kins`.
+pub(super) fn modules(files: &[File]) -> Vec<Module> {
+    let mut modules: Vec<Module> = Vec::new();
+    let in_name = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+    for file in files {
+        let Ok(text) = Text::new(file) else { continue };
+        let mut loaded = Vec::new();
+        for (number, line) in text.lines.iter().enumerate() {
+            let code = line.split('#').next().unwrap_or(line);
+            // Python: `rt.loadRT('lineardeltakins')`.
+            if !code.to_ascii_lowercase().contains("loadrt") {
+                continue;
+            }
+            let names = code.split(|c| !in_name(c));
+            let kins = names.filter(|name| name.ends_with("kins") && *name != "kins");
+            loaded.extend(kins.map(|name| (number, name.to_owned())));
+        }
+        for (line, name) in loaded {
+            if modules.iter().all(|known| known.name != name)
+                && let Ok(text) = Text::new(file)
+            {
+                modules.push(Module { name, text, line });
+            }
+        }
+    }
+    modules
 }

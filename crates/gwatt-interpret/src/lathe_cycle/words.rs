@@ -26,11 +26,14 @@ impl Control<'_> {
         run.facts.boundary = true;
         run.facts.uses_motion = true;
         let Some(contour) = run.words.take(b'Q') else {
-            return fault(
-                "without Q, the number of the contour's subroutine",
-                span,
-                run,
-            );
+            let message = match number {
+                72 | 720 => "without Q, the number of the contour's subroutine",
+                _ => {
+                    "without Q, the number of the contour's subroutine; inches are G20 here, \
+                     millimetres G21"
+                }
+            };
+            return fault(message, span, run);
         };
         let contour = contour.round();
         if !(0.0..=f64::from(u32::MAX)).contains(&contour) {

@@ -79,6 +79,11 @@ impl Control<'_> {
                 (Parameters::new(), None)
             }
             Err(odd) => {
+                let homes = (letter, number) == (b'G', 280) && !self.names_parameters();
+                if let Some(flags) = text.axis_flags(at).filter(|_| homes) {
+                    self.code(run, (letter, number, span), &flags);
+                    return None;
+                }
                 odd_text(&mut run.report, odd);
                 return None;
             }
@@ -101,6 +106,11 @@ impl Control<'_> {
 
     fn one_a_line(&self) -> bool {
         !self.machine.controller.language.printer.several_commands
+    }
+
+    /// Klipper: what stands between blanks is one parameter.
+    fn names_parameters(&self) -> bool {
+        self.machine.controller.language.printer.velocity_limit
     }
 
     /// Text without a command that can be read.

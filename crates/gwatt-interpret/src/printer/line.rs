@@ -221,6 +221,25 @@ impl<'t> Text<'t> {
         Self { start, ..self }
     }
 
+    /// `XY` for X and Y, as firmware reads it that looks for each letter (Marlin's parser:
+    /// "Another parameter right away?"; `RepRapFirmware`'s `Seen`).
+    pub(super) fn axis_flags(&self, at: usize) -> Option<Parameters> {
+        let mut list = Parameters::new();
+        for place in at..self.end {
+            match self.byte(place)?.to_ascii_uppercase() {
+                b' ' | b'\t' => {}
+                letter @ (b'X' | b'Y' | b'Z') if !list.is_full() => list.push(Parameter {
+                    letter,
+                    value: None,
+                    span: Span::new(place, place + 1),
+                    number: Span::new(place + 1, place + 1),
+                }),
+                _ => return None,
+            }
+        }
+        Some(list)
+    }
+
     /// Reads parameters from `at` to the next G or M word, whose place is
     /// given too; an error is where something else stands.
     pub(super) fn parameters(&self, mut at: usize) -> Result<(Parameters, Option<usize>), Span> {

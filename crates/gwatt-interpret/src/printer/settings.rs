@@ -107,7 +107,7 @@ impl Control<'_> {
 
     /// M203: largest speed of each axis.
     ///
-    /// Source: Marlin M203 (units/s), `RepRapFirmware` M203 (mm/min).
+    /// Source: Marlin M203 (units/s), `RepRapFirmware` M203 (mm/min, S1 mm/s).
     pub(super) fn speed_caps(
         &mut self,
         run: &mut Run<'_, '_>,
@@ -117,6 +117,9 @@ impl Control<'_> {
         let Some(unit) = self.machine.controller.language.printer.speed_cap_mm_s else {
             return;
         };
+        // RepRapFirmware, GCodes2.cpp, case 203: mm/s after S1.
+        let per_second = value(parameters, b'S').is_some_and(|s| s.trunc() == 1.0);
+        let unit = if per_second { 1.0 } else { unit };
         for parameter in parameters {
             let axis = AxisId::from_letter(parameter.letter).map(|axis| axis as usize);
             let (Some(axis), Some(value)) = (axis, parameter.value) else {
@@ -128,6 +131,7 @@ impl Control<'_> {
             }
             self.knobs.limit_axis_speed(self.machine, axis, cap);
         }
+        self.knobs.set_in(self.machine, self.modal.mm_per_unit);
         run.facts.turns_knob = true;
         self.settle();
     }
@@ -276,6 +280,7 @@ impl Control<'_> {
             self.knobs.turn_path(*letter, accel, self.modal.mm_per_unit);
             run.facts.turns_knob = true;
         }
+        self.knobs.set_in(self.machine, self.modal.mm_per_unit);
         true
     }
 

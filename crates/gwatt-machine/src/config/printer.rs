@@ -42,6 +42,7 @@ pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> 
             None | Some(SpeedCapName::PerSecond) => Some(1.0),
             Some(SpeedCapName::PerMinute) => Some(1.0 / SECONDS_PER_MINUTE),
         },
+        limits_in_mm: table.limits_in_mm.unwrap_or(own.limits_in_mm),
         velocity_limit: table.velocity_limit.unwrap_or(own.velocity_limit),
         path_accel_spares: table
             .path_accel_spares

@@ -14,6 +14,9 @@ pub(crate) struct PrinterTable {
     pub(crate) several_commands: Option<bool>,
     /// Unit of M203; default per-second.
     pub(crate) speed_cap: Option<SpeedCapName>,
+    /// Whether some versions take M201, M203 and M204 in mm after G20 too, others in
+    /// inches; default false: all take them in inches.
+    pub(crate) limits_in_mm: Option<bool>,
     /// Whether M204 and `SET_VELOCITY_LIMIT` set the limits of X and Y
     /// themselves; default false.
     pub(crate) velocity_limit: Option<bool>,
