@@ -9,7 +9,7 @@ use super::{MachineArgs, ProgramArgs};
 const EXAMPLES: &str = "\
 Examples:
   gwatt verify part.ngc power.csv -m mill.toml
-  gwatt verify part.ngc power.csv -m mill.toml --svg overlay.svg --csv blocks.csv
+  gwatt verify part.ngc power.csv -m mill.toml --html overlay.html --csv blocks.csv
   gwatt verify part.ngc power.csv -m mill.toml --into mill.toml    keep mill.toml.bak
   gwatt verify part.ngc meter.txt -m mill.toml --map power=P*1kW --map time=#1*1ms
 
@@ -49,6 +49,9 @@ pub struct VerifyArgs {
     /// Draw both curves over each other here
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
+    /// Write a page with both curves, the verdict and the blocks; one file, no network
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
     /// Raise the margin of this machine file to what was found if the verdict is good, and
     /// keep it as MACHINE.bak
     #[arg(long, value_name = "MACHINE")]

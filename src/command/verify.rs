@@ -9,7 +9,7 @@ use anyhow::{Context, Result};
 use gwatt::identify::overlay::{Agreement, Overlay, PowerTrace, overlay};
 use gwatt::identify::{MappedColumn, Outcome, merge};
 use gwatt::report::{
-    OverlayChart, Verdict, VerifiedNames, verified_csv, verified_json, verified_text,
+    OverlayChart, Verdict, VerifiedNames, verified_csv, verified_json, verified_page, verified_text,
 };
 use gwatt::verify::predicted;
 
@@ -40,7 +40,7 @@ pub fn run(args: &VerifyArgs, terminal: Terminal) -> Result<Verdict> {
         .chain(log)
         .chain(machine)
         .collect();
-    let results = [&args.csv, &args.json, &args.svg, &args.into];
+    let results = [&args.csv, &args.json, &args.svg, &args.html, &args.into];
     let outputs: Vec<&Path> = results.into_iter().flatten().map(AsRef::as_ref).collect();
     refuse_clashes(&inputs, &outputs)?;
     let mut setup = Setup::new(&args.machine, &args.reading, terminal)?;
@@ -97,6 +97,9 @@ fn deliver(
     let svg = spooled(args.svg.as_deref(), |out| {
         OverlayChart::new(found, trace).write(out)
     })?;
+    let html = spooled(args.html.as_deref(), |out| {
+        verified_page(names, found, trace, out)
+    })?;
     let good = found.agreement() == Agreement::Good;
     let is_refused = args.into.is_some() && !good && !args.force;
     let merged = match &args.into {
@@ -107,14 +110,14 @@ fn deliver(
         }
         _ => None,
     };
-    for spool in [csv, json, svg].into_iter().flatten() {
+    for spool in [csv, json, svg, html].into_iter().flatten() {
         spool.deliver()?;
     }
     if let Some((path, merged)) = merged {
         merged.deliver(path, terminal)?;
     }
     let text = verified_text(names, found);
-    let printed = [&args.csv, &args.json, &args.svg];
+    let printed = [&args.csv, &args.json, &args.svg, &args.html];
     if printed.into_iter().flatten().any(|path| is_dash(path)) {
         terminal.text(&text);
     } else {

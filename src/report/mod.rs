@@ -45,6 +45,8 @@ mod text;
 mod tune_page;
 mod tuned;
 mod verified;
+#[cfg(feature = "html")]
+mod verified_page;
 
 pub use baseline::{Baseline, BaselineError};
 pub use chart::SpindleChart;
@@ -88,3 +90,5 @@ pub use text::{axis_table, check_text, limit_text, partial_text, set_text};
 pub use tune_page::tune_page;
 pub use tuned::{sections_csv, tuned_json, tuned_text};
 pub use verified::{VerifiedNames, verified_csv, verified_json, verified_text};
+#[cfg(feature = "html")]
+pub use verified_page::verified_page;

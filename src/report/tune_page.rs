@@ -13,7 +13,7 @@ use crate::identify::tune::{AxisResponse, LowPass, Tuned};
 use crate::identify::{Factor, FrequencyResponse};
 
 const PAGE: &str = include_str!("page/tune.html");
-const STYLE: &str = include_str!("page/tune.css");
+pub(super) const STYLE: &str = include_str!("page/tune.css");
 const SCRIPTS: [&str; 3] = [
     include_str!("page/plot.js"),
     include_str!("page/tune.js"),

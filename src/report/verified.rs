@@ -26,7 +26,7 @@ pub struct VerifiedNames {
 }
 
 /// The blocks that draw most above their prediction, worst first.
-fn worst(overlay: &Overlay) -> Vec<&BlockPeaks> {
+pub(super) fn worst(overlay: &Overlay) -> Vec<&BlockPeaks> {
     let mut blocks: Vec<&BlockPeaks> = overlay.blocks.iter().collect();
     let excess = |it: &BlockPeaks| it.measured_w - it.predicted_w;
     blocks.sort_by(|a, b| excess(b).total_cmp(&excess(a)));

@@ -26,6 +26,24 @@ fn sizes_are_written_in_four_ways() {
     assert_eq!(json["rating"]["steps"].as_array().unwrap().len(), 6);
     assert_eq!(json["rating"]["programs"][1]["outcome"], "sized");
     assert_eq!(json["capacitance"], serde_json::Value::Null);
+    // The programs together, from the highest rating down.
+    let curve = json["curve"].as_array().unwrap();
+    let powers = curve.iter().map(|it| it["peak_power_w"].as_f64().unwrap());
+    let powers: Vec<f64> = powers.collect();
+    assert!(powers.is_sorted_by(|a, b| a > b), "{powers:?}");
+    let unlimited = &json["unlimited"];
+    let fastest = curve.iter().find(|it| it["fits"] == true).unwrap();
+    assert_eq!(fastest["duration_s"], unlimited["duration_s"]);
+    assert_eq!(json["loss"]["percent"], 1.0);
+    let steps = json["rating"]["steps"].as_array().unwrap();
+    let wished = steps.iter().find(|it| it["wished_loss"] == 0.01).unwrap();
+    assert_eq!(json["loss"]["peak_power_w"], wished["peak_power_w"]);
+    let slowed = curve.iter().filter(|it| it["fits"] == true);
+    assert!(
+        slowed
+            .clone()
+            .all(|it| it["duration_s"].as_f64() >= unlimited["duration_s"].as_f64())
+    );
     let svg = shop.get("s.svg");
     assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
     assert!(svg.contains("machine file: 4000 W"), "{svg}");

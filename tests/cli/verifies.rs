@@ -57,7 +57,8 @@ const VERIFY: [&str; 5] = ["verify", "part.nc", "log.csv", "-m", "mill.toml"];
 fn shift_pace_and_margin_are_found() {
     let shop = shop();
     let written = ["--json", "v.json", "--csv", "v.csv", "--svg", "v.svg"];
-    let ran = shop.run(&[&VERIFY[..], &written].concat());
+    let page = ["--html", "v.html"];
+    let ran = shop.run(&[&VERIFY[..], &written, &page].concat());
     // More than the margin of the file.
     assert_eq!(ran.code, 1, "{}", ran.stderr);
     assert!(ran.stdout.ends_with("verdict: good\n"), "{}", ran.stdout);
@@ -89,6 +90,18 @@ fn shift_pace_and_margin_are_found() {
         "{picture}"
     );
     assert!(picture.ends_with("</svg>\n"));
+    // The page holds the same text, picture and blocks.
+    let page = shop.get("v.html");
+    assert!(
+        page.contains("<p class=\"good\">Verdict: good</p>"),
+        "{page}"
+    );
+    assert!(page.contains(&picture), "{page}");
+    assert_eq!(page.matches("<tr><th scope=\"row\">").count(), lines.len());
+    assert!(
+        page.ends_with("</html>\n") && !page.contains("<script"),
+        "{page}"
+    );
 }
 
 #[test]

@@ -22,6 +22,8 @@ mod set_page;
 mod shares;
 mod shown;
 
+pub(super) use picture::escaped;
+
 pub use lines::LineTexts;
 pub use rows::PageRows;
 pub use set_page::SetPage;

@@ -233,7 +233,7 @@ fn outline(text: &mut String, peaks: &Peaks, time: &Scale, value: &Scale) {
 }
 
 /// Text in which no tag begins.
-fn escaped(text: &str) -> String {
+pub(in crate::report) fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {

@@ -15,8 +15,33 @@ use crate::report::finding::Finding;
 struct Whole<'a> {
     machine: &'a str,
     converter: &'a str,
+    /// The programs together, by the converter's peak power, highest first.
+    curve: Vec<PointRecord>,
+    unlimited: Option<UnlimitedRecord>,
+    loss: Option<LossRecord>,
     rating: SizingRecord<'a>,
     capacitance: Option<SizingRecord<'a>>,
+}
+
+#[derive(Serialize)]
+struct PointRecord {
+    peak_power_w: Figure,
+    duration_s: Option<Figure>,
+    fits: bool,
+}
+
+/// Where nothing is slowed, and from which peak power on that is so.
+#[derive(Serialize)]
+struct UnlimitedRecord {
+    duration_s: Figure,
+    peak_power_w: Figure,
+}
+
+/// The first loss of time that was wished for, and the peak power that it takes.
+#[derive(Serialize)]
+struct LossRecord {
+    percent: Figure,
+    peak_power_w: Figure,
 }
 
 #[derive(Serialize)]
@@ -108,15 +133,41 @@ pub fn size_json(
     converter: &str,
     mut out: impl Write,
 ) -> io::Result<()> {
+    let curve = size.rating.curve.as_ref();
+    let wished = curve.and_then(|curve| curve.losses.first());
     let whole = Whole {
         machine,
         converter,
+        curve: curve.map(points).unwrap_or_default(),
+        unlimited: curve.map(|curve| UnlimitedRecord {
+            duration_s: Figure(curve.duration_s),
+            peak_power_w: Figure(curve.enough),
+        }),
+        loss: wished.map(|(loss, rung)| LossRecord {
+            percent: Figure(100.0 * loss),
+            peak_power_w: Figure(rung.peak_power_w),
+        }),
         rating: sizing(&size.rating),
         capacitance: size.capacitance.as_ref().map(sizing),
     };
     serde_json::to_writer_pretty(&mut out, &whole)?;
     writeln!(out)?;
     out.flush()
+}
+
+/// Each rating once, though it may be the machine's own or that for a loss as well.
+fn points(curve: &Curve) -> Vec<PointRecord> {
+    let mut rungs = rungs(curve);
+    rungs.dedup_by(|(_, a), (_, b)| a.peak_power_w == b.peak_power_w);
+    let point = |(_, rung): (Step, &Rung)| {
+        let fits = rung.total.certified;
+        PointRecord {
+            peak_power_w: Figure(rung.peak_power_w),
+            duration_s: fits.then_some(Figure(rung.total.duration_s)),
+            fits,
+        }
+    };
+    rungs.into_iter().map(point).collect()
 }
 
 fn sizing(sizing: &Sizing) -> SizingRecord<'_> {
