@@ -12,9 +12,11 @@ use crate::identify::overlay::{Agreement, Overlay, PowerTrace};
 
 /// Blocks in the table: those that draw most above their prediction.
 const ROWS: usize = 200;
-/// The picture is drawn on white, in dark rooms too.
-const OWN_STYLE: &str = "figure { margin: 0; } figure svg { max-width: none; } \
-                         figure { background: white; overflow-x: auto; }";
+/// Names of files may be long; the picture is drawn on white, and scrolls where there is little
+/// room.
+const OWN_STYLE: &str = "h1 { overflow-wrap: anywhere; } \
+                         figure { margin: 0; background: white; overflow-x: auto; } \
+                         figure svg { min-width: 44rem; max-width: none; }";
 
 /// Writes the page.
 ///
