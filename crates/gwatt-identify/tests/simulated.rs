@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use gwatt_identify::{Kind, Quantity, Recording, Signal};
+use gwatt_identify::{Factor, Kind, Quantity, Recording, Signal, TransferFunction};
 
 pub(crate) const PERIOD_S: f64 = 1e-3;
 
@@ -246,5 +246,32 @@ pub(crate) fn recording(force: Vec<f64>, motion: Vec<f64>, quantity: Quantity) -
         ],
         ignored: Vec::new(),
         notes: Vec::new(),
+    }
+}
+
+pub(crate) fn pair(hz: f64, damping: f64) -> Factor {
+    Factor::Pair {
+        omega_rad_s: TAU * hz,
+        damping,
+    }
+}
+
+/// One or two anti-resonances, each with a resonance above it, and a drive that swings.
+pub(crate) fn plant(random: &mut Random) -> TransferFunction {
+    let count = if random.uniform(0.0, 1.0) < 0.6 { 1 } else { 2 };
+    let mut hz = random.uniform(12.0, 60.0);
+    let (mut zeros, mut poles) = (Vec::new(), Vec::new());
+    for _ in 0..count {
+        zeros.push(pair(hz, random.uniform(0.01, 0.08)));
+        hz *= random.uniform(1.2, 1.5);
+        poles.push(pair(hz, random.uniform(0.01, 0.08)));
+        hz *= random.uniform(1.3, 1.8);
+    }
+    poles.push(pair(hz.max(120.0) * 1.3, random.uniform(0.03, 0.1)));
+    TransferFunction {
+        gain: 1.0 / random.uniform(0.005, 0.1),
+        zeros,
+        poles,
+        delay_s: 0.0,
     }
 }

@@ -10,7 +10,7 @@ use gwatt_identify::{
     Factor, Given, Measured, Quantity, Recording, TransferFunction, judgement, rigid, simulate,
 };
 
-use crate::simulated::{Axis, Motion, PERIOD_S, Random, Sensors, recorded, recording};
+use crate::simulated::{Axis, Motion, PERIOD_S, Random, Sensors, pair, plant, recorded, recording};
 
 /// What came out: the verdict's word, or that it is refused.
 type Word = String;
@@ -93,33 +93,6 @@ fn two_columns(random: &mut Random, factor: f64) -> Word {
     let more = crate::simulated::recording(Vec::new(), speed, Quantity::Velocity);
     recording.signals.extend(more.signals.into_iter().skip(1));
     rigid_word(recording)
-}
-
-fn pair(hz: f64, damping: f64) -> Factor {
-    Factor::Pair {
-        omega_rad_s: TAU * hz,
-        damping,
-    }
-}
-
-/// One or two anti-resonances, each with a resonance above it, and a drive that swings.
-fn plant(random: &mut Random) -> TransferFunction {
-    let count = if random.uniform(0.0, 1.0) < 0.6 { 1 } else { 2 };
-    let mut hz = random.uniform(12.0, 60.0);
-    let (mut zeros, mut poles) = (Vec::new(), Vec::new());
-    for _ in 0..count {
-        zeros.push(pair(hz, random.uniform(0.01, 0.08)));
-        hz *= random.uniform(1.2, 1.5);
-        poles.push(pair(hz, random.uniform(0.01, 0.08)));
-        hz *= random.uniform(1.3, 1.8);
-    }
-    poles.push(pair(hz.max(120.0) * 1.3, random.uniform(0.03, 0.1)));
-    TransferFunction {
-        gain: 1.0 / random.uniform(0.005, 0.1),
-        zeros,
-        poles,
-        delay_s: 0.0,
-    }
 }
 
 /// A torque with power up to 200 Hz.

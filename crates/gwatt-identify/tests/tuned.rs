@@ -1,46 +1,19 @@
 //! Filters for pairs of axes that are recorded with the signals proposed for them.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 use std::thread;
 
 use gwatt_identify::design::{Bounds, Known, propose};
 use gwatt_identify::excitation::{Shape, make};
 use gwatt_identify::flexible::{Choice, Method};
 use gwatt_identify::tune::{AxisResponse, Correction, Discretization, Tuned, Wish, of_recording};
-use gwatt_identify::{Factor, Given, Measured, Quantity, TransferFunction, simulate};
+use gwatt_identify::{Given, Measured, Quantity, TransferFunction, simulate};
 
-use crate::simulated::{PERIOD_S, Random, recording};
+use crate::simulated::{PERIOD_S, Random, plant, recording};
 
 const BAND_HZ: f64 = 50.0;
 /// Noise of the sensor, as a share of the acceleration under the M-sequence.
 const NOISE: f64 = 0.01;
-
-fn pair(hz: f64, damping: f64) -> Factor {
-    Factor::Pair {
-        omega_rad_s: TAU * hz,
-        damping,
-    }
-}
-
-/// One or two anti-resonances, each with a resonance above it, and a drive that swings.
-fn plant(random: &mut Random) -> TransferFunction {
-    let count = if random.uniform(0.0, 1.0) < 0.6 { 1 } else { 2 };
-    let mut hz = random.uniform(12.0, 60.0);
-    let (mut zeros, mut poles) = (Vec::new(), Vec::new());
-    for _ in 0..count {
-        zeros.push(pair(hz, random.uniform(0.01, 0.08)));
-        hz *= random.uniform(1.2, 1.5);
-        poles.push(pair(hz, random.uniform(0.01, 0.08)));
-        hz *= random.uniform(1.3, 1.8);
-    }
-    poles.push(pair(hz.max(120.0) * 1.3, random.uniform(0.03, 0.1)));
-    TransferFunction {
-        gain: 1.0 / random.uniform(0.005, 0.1),
-        zeros,
-        poles,
-        delay_s: 0.0,
-    }
-}
 
 /// An M-sequence, the signal that it leads to, and the axis by a recording of that; the
 /// noise is the sensor's in both.
