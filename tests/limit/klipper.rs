@@ -27,6 +27,32 @@ fn accelerations_from_an_unknown_place_are_enough() {
     assert!(text.contains("\nG1 X50 Y50 Z5 F6000\n"), "{text}");
 }
 
+/// 10 kg with 50 N of friction: at the 200 mm/s that are asked for friction alone takes 10 W.
+/// 50 mm are too short for them. Klipper cruises half of each hill, so that √(a·50/2) mm/s are
+/// reached, which with a = 769 mm/s² takes 57.69 N · 0.13865 m/s = 7.999 W, with 770 8.005 W.
+#[test]
+fn a_block_too_short_for_its_speed_fits_by_its_acceleration() {
+    let text = "schema = 1\nname = \"test\"\ncontroller = \"klipper\"\n[converter]\n\
+                peak_power_w = 8\n[limits]\nmargin = 0.0\n\
+                [axes.X]\nrapid_mm_min = 30000\naccel_mm_s2 = 1000\nmass_kg = 10\n\
+                coulomb_n = 50\nreference_mm = 0\n\
+                [axes.Y]\nrapid_mm_min = 30000\naccel_mm_s2 = 1000\nmass_kg = 10\n";
+    let machine = Machine::from_toml("test.toml", text).expect("a machine").0;
+    let program = "G1 X0 F600\nG1 X50 F12000\nG1 X0 F600\n";
+    let (text, _) = fits(&machine, how(Strategy::Optimal, false), program);
+    let expected = "G1 X0 F600\nSET_VELOCITY_LIMIT ACCEL=769\nG1 X50 F12000\n\
+                    SET_VELOCITY_LIMIT ACCEL=1000\nG1 X0 F600\n";
+    assert_eq!(text, expected);
+    // Next to others it has less: what it draws there is looked at, not what it could.
+    let program = "G28\nG1 X50 F12000\nG1 X110 F12000\nG1 X0 F600\n";
+    fits(&machine, how(Strategy::Optimal, false), program);
+    // Where it reaches its speed with the lowest value as well, friction is what exceeds.
+    let program = "G28\nG1 X90000 F12000\n";
+    let refusal = refused(&machine, how(Strategy::Optimal, false), program);
+    let friction = "friction alone takes 125.0 %";
+    assert!(refusal.contains(friction), "{refusal}");
+}
+
 /// 10 kg by X and by Y, 200 mm/s and 1000 mm/s²: from rest to 200 mm/s along X takes
 /// 10·1·0.2 = 2 W.
 fn machine(peak_w: f64, rest: &str) -> Machine {
@@ -112,7 +138,8 @@ fn acceleration_is_lowered_along_the_path_and_put_back() {
         "{}",
         summary.after.peak_w
     );
-    // What the program has set itself comes back.
+    // What the program has set itself comes back. Half of the hill is cruised, so that with
+    // 585 mm/s² √(585·100/2) = 171.03 mm/s are reached: 10·0.585·0.17103 = 1.0005 W.
     for word in ["M204 S800", "SET_VELOCITY_LIMIT ACCEL=800"] {
         let (text, _) = fits(
             &machine,
@@ -122,7 +149,7 @@ fn acceleration_is_lowered_along_the_path_and_put_back() {
         assert_eq!(
             text,
             format!(
-                "{word}\nSET_VELOCITY_LIMIT ACCEL=500\nG1 X100 F12000\n\
+                "{word}\nSET_VELOCITY_LIMIT ACCEL=585\nG1 X100 F12000\n\
                  SET_VELOCITY_LIMIT ACCEL=800\nG1 X90 F300\n"
             )
         );

@@ -21,6 +21,9 @@ pub(super) struct Case<'a> {
 pub enum Ends {
     /// At rest.
     Rest,
+    /// At rest as far as it is looked at by itself: what its neighbours make of it shows when
+    /// the program is planned again. Each of these steps asks for less power.
+    Alone(u8),
     /// At any speed up to its own, with any acceleration up to its own: it fits
     /// whatever its neighbours do. The depth of [`super::Depths`].
     Any(u8),

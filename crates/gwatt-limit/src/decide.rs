@@ -46,7 +46,18 @@ impl Solver<'_> {
                 "no feed and no acceleration changes that: a larger converter is needed",
             ));
         }
-        self.sooner_stopped(case, |case| self.by_strategy(case, &levers))
+        let solved = |ends: Ends| {
+            let case = Case { ends, ..case };
+            self.sooner_stopped(case, |case| self.by_strategy(case, &levers))
+        };
+        if !self.by_accel_alone(case, &levers) {
+            return solved(ends);
+        }
+        match ends {
+            Ends::Rest => solved(Ends::Alone(0)),
+            Ends::Any(depth) => self.step_by_step(depth, solved),
+            Ends::Alone(_) => solved(ends),
+        }
     }
 
     /// The change that the strategy says.

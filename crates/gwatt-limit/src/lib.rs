@@ -9,6 +9,7 @@
 
 mod accels;
 mod accel_grid;
+mod alone;
 mod along;
 mod bounds;
 mod by_axis;

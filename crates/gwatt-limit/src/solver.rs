@@ -88,6 +88,7 @@ impl<'m> Solver<'m> {
             }
             Ends::Any(depth) if !self.gets_stops(case.mv, mv) => depth,
             _ if mv.stray.is_far() => 2,
+            Ends::Alone(steps) => return self.load_alone(case, mv, steps),
             _ => return self.planned_load(case, mv),
         };
         let share = &share(case, mv);
@@ -106,7 +107,7 @@ impl<'m> Solver<'m> {
     }
 
     /// Load of a move that begins and ends at rest, with the spindle next to it.
-    fn planned_load(&self, case: Case<'_>, mv: &Move) -> f64 {
+    pub(super) fn planned_load(&self, case: Case<'_>, mv: &Move) -> f64 {
         let halved = self.halved(case.mv, mv);
         let mv = halved.as_ref().unwrap_or(mv);
         let plan = plan(self.machine, mv, self.largest);
@@ -357,7 +358,7 @@ impl<'m> Solver<'m> {
 
 /// What the spindle takes of a move, changed or not: a rapid written as a feed
 /// may wait until it has its speed.
-fn share(case: Case<'_>, mv: &Move) -> SpindleShare {
+pub(super) fn share(case: Case<'_>, mv: &Move) -> SpindleShare {
     let own = case.assessment.spindle;
     let waits = case.mv.kind == MoveKind::Rapid && mv.kind != MoveKind::Rapid;
     match own.settled_w.filter(|_| waits) {

@@ -173,7 +173,7 @@ impl Solver<'_> {
 }
 
 /// The share of each hill of speed that is cruised at least.
-fn cruise_ratio(mv: &Move, rules: &LookAhead) -> f64 {
+pub(super) fn cruise_ratio(mv: &Move, rules: &LookAhead) -> f64 {
     match mv.corner {
         Corner::Square(square) => square.cruise_ratio,
         _ => rules.min_cruise_ratio,

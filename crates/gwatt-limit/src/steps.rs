@@ -33,7 +33,7 @@ impl Solver<'_> {
     pub(super) fn load_by_steps(&self, case: Case<'_>, mv: &Move) -> Option<f64> {
         let depth = match case.ends {
             Ends::Any(depth) => depth,
-            Ends::Rest => 0,
+            Ends::Rest | Ends::Alone(_) => 0,
         };
         let power = *POWERS.get(usize::from(depth))?;
         if !self.exceeds_by_steps(case, mv) {
