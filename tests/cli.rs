@@ -1,6 +1,7 @@
 //! The binary from outside: exit codes, messages, and what is left on the disk.
 
 mod closed_pipe;
+mod colours;
 mod advice;
 mod baselines;
 mod ci;

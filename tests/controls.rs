@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use gwatt::machine::{
-    Controller, Knob, KnobTarget, KnobUnit, PathMode, RapidKnob, RapidPath, builtin,
+    Controller, Knob, KnobTarget, KnobUnit, PathMode, RapidJoint, RapidKnob, RapidPath, builtin,
 };
 
 const HEAD: &str = "\
@@ -15,7 +15,7 @@ How each control moves, and what `limit` writes for it. What is read and what is
 [Programs it reads](programs.md). This page is made from the profiles
 (`gwatt machine show NAME` prints one, with the source of each value); a machine file names its own
 by `controller`, and may correct it. What a control has to be set to for a certificate stands with
-the certificate.
+the certificate as well.
 
 *Planned* figures follow the control's own look-ahead. Where corners are not modelled and the
 program blends, figures are a *robust* bound: [Glossary](glossary.md).
@@ -90,6 +90,12 @@ fn section(out: &mut String, control: &Controller) {
     let skips = either(language.block_delete, "with `--block-delete`", "never");
     writeln!(out, "| blocks with `/` are skipped | {skips} |").unwrap();
     writeln!(out, "| gwatt writes | {written} |").unwrap();
+    if let Some(stops) = stops(control) {
+        writeln!(out, "| a feed that stands for a rapid rests by | {stops} |").unwrap();
+    }
+    if let Some((words, _)) = language.dwell_block(2.0) {
+        writeln!(out, "| with `--allow pause` | `{words}` for two seconds |").unwrap();
+    }
     if !control.wired.is_empty() {
         let wired = words(&control.wired);
         writeln!(
@@ -98,6 +104,12 @@ fn section(out: &mut String, control: &Controller) {
         )
         .unwrap();
     }
+    writeln!(
+        out,
+        "| to set in the machine file | {} |",
+        settings(control)
+    )
+    .unwrap();
     if !language.levels.is_empty() {
         let levels = language.levels.join("`, `");
         writeln!(
@@ -106,6 +118,57 @@ fn section(out: &mut String, control: &Controller) {
         )
         .unwrap();
     }
+}
+
+/// The words by which a rapid keeps its stops as a feed; `None` where rapids are run through
+/// like feeds.
+fn stops(control: &Controller) -> Option<String> {
+    let Controller {
+        language, planner, ..
+    } = control;
+    if planner.rapid_joint == RapidJoint::All {
+        return None;
+    }
+    let mut words = Vec::new();
+    if let Some(word) = language.stop_word() {
+        words.push(format!("`{word}` in its block"));
+    } else if language.stops_by_mode() {
+        words.push("`G61` before it and `G64` after it".to_owned());
+    }
+    if language.family.facts().stops_by_exact_path && language.g61_1 == PathMode::ExactStop {
+        words.push("`G61.1` before it and the mode again after it".to_owned());
+    }
+    if planner.dwell_stops {
+        words.push(format!(
+            "`{}` before and after it",
+            language.shortest_dwell().0
+        ));
+    }
+    Some(words.join(", "))
+}
+
+/// What a machine file has to say of a control, as the machine is set.
+fn settings(control: &Controller) -> String {
+    let Controller {
+        language, planner, ..
+    } = control;
+    let mut settings = Vec::new();
+    if planner.rapid == RapidPath::Independent {
+        settings.push(
+            "`rapid = \"linear\"` under `[path]` where a parameter lets rapids run along lines",
+        );
+    }
+    if planner.look_ahead.is_some() {
+        settings
+            .push("its own settings of speed, acceleration and corners: `gwatt machine import`");
+    } else {
+        settings
+            .push("`mode = \"exact-stop\"` under `[path]` where the machine stops at every block");
+    }
+    if language.dialect.adapts() {
+        settings.push("`decimal_point` under `[language]`: what numbers without a point mean");
+    }
+    settings.join("; ")
 }
 
 #[test]

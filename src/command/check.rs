@@ -79,7 +79,7 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
         }
         match args.format {
             Format::Text if shown => {
-                let text = report::check_text(&checked, &setup.machine);
+                let text = report::check_text(&checked, &setup.machine, terminal.out_style());
                 print(|out| out.write_all(text.as_bytes()))?;
             }
             Format::Text => {}

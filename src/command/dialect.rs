@@ -2,7 +2,7 @@
 
 use anyhow::{Result, bail};
 use gwatt::dialect::{Recognised, listed, recognise};
-use gwatt::machine::{self, Language};
+use gwatt::machine::{self, Language, builtin};
 use gwatt::pipeline::{self, Failure, Limits};
 use gwatt::report::Verdict;
 
@@ -25,6 +25,7 @@ pub fn run(args: &DialectArgs, terminal: Terminal) -> Result<Verdict> {
     let setup = setup
         .map(|name| Setup::of(name, &args.reading, terminal))
         .transpose()?;
+    let mut usual: Option<Setup> = None;
     let mut worst = Verdict::Fits;
     for program in &mut programs {
         let looked = program.keep().and_then(|()| look(program));
@@ -39,20 +40,44 @@ pub fn run(args: &DialectArgs, terminal: Terminal) -> Result<Verdict> {
         if found.foreign.is_some() || found.no_program.is_some() {
             worst = Verdict::Refused;
         }
-        let tried = setup.as_ref().map_or(String::new(), |setup| {
-            let read = read_without_errors(setup, program, &found.profiles);
-            if found.profiles.is_empty() || found.no_program.is_some() {
-                String::new()
-            } else if read.is_empty() {
-                "; not read without errors on this machine".to_owned()
-            } else {
-                format!("; read without errors as {}", listed(&read))
+        let unmarked = found.profiles.is_empty();
+        let on = match &setup {
+            _ if found.no_program.is_some() || found.foreign.is_some() => None,
+            None if unmarked => {
+                if usual.is_none() {
+                    usual = Some(Setup::of(USUAL, &args.reading, terminal)?);
+                }
+                usual.as_ref()
             }
+            given => given.as_ref(),
+        };
+        let tried = on.map_or(String::new(), |setup| {
+            let all: Vec<&str> = builtin::controllers().iter().map(|it| it.name).collect();
+            let names = if unmarked { &all } else { &found.profiles };
+            reading(&read_without_errors(setup, program, names), names.len())
         });
         let name = &program.name;
         print(|out| writeln!(out, "{name}: {}{tried}", verdict(&found)))?;
     }
     Ok(worst)
+}
+
+/// The machine that programs without marks are tried on: it has the axes of most.
+const USUAL: &str = "five-axis";
+
+/// Profiles that marks may speak for at most; with more, all are tried.
+const RELATIVES_MOST: usize = 8;
+
+/// Which of so many profiles read a program without errors, in words.
+fn reading(read: &[&str], tried: usize) -> String {
+    match read {
+        [] if tried > RELATIVES_MOST => "; no profile reads it without errors".to_owned(),
+        [] => "; not read without errors on this machine".to_owned(),
+        all if all.len() == tried && tried > RELATIVES_MOST => {
+            "; all profiles read it without errors".to_owned()
+        }
+        some => format!("; read without errors as {}", listed(some)),
+    }
 }
 
 /// The answer in words.

@@ -73,7 +73,7 @@ pub fn run(args: &DiffArgs, terminal: Terminal) -> Result<Verdict> {
     )?;
     let worst = comparisons.iter().map(Comparison::verdict).max();
     let worst = worst.unwrap_or(Verdict::Fits);
-    let text = comparison_text(&comparisons, &args.from, &args.to);
+    let text = comparison_text(&comparisons, &args.from, &args.to, terminal.out_style());
     if let Some(path) = &args.csv {
         let mut spool = BufWriter::new(Target::new(path)?.spool()?);
         comparison_csv(&comparisons, &args.from, &args.to, &mut spool)?;

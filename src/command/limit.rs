@@ -11,6 +11,7 @@ use gwatt::report::{Found, Verdict, limit_json, limit_text, partial_text, unifie
 
 use super::clash::refuse_clashes;
 use super::dialect;
+use super::diff_colours::DiffColours;
 use super::input::Program;
 use super::limit_set;
 use super::listing::Listing;
@@ -246,10 +247,11 @@ fn show(
 ) {
     messages.diagnostics(program, &summary.before.notes);
     messages.diagnostics(program, &summary.reasons);
+    let style = messages.style();
     messages.text(&if partly {
-        partial_text(program, summary, &setup.machine)
+        partial_text(program, summary, &setup.machine, style)
     } else {
-        limit_text(program, summary, &setup.machine)
+        limit_text(program, summary, &setup.machine, style)
     });
 }
 
@@ -264,7 +266,9 @@ fn deliver(
         let old = BufReader::new(program.open()?);
         let new = BufReader::new(spool.read()?);
         return print(|out: &mut dyn Write| {
-            unified_diff(&program.name, program.bytes(), old, new, out)
+            let mut out = DiffColours::new(out, messages.out_style());
+            unified_diff(&program.name, program.bytes(), old, new, &mut out)?;
+            out.finish()
         });
     }
     let Some(path) = program.path().filter(|_| args.in_place) else {

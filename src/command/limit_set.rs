@@ -12,6 +12,7 @@ use gwatt::report::{Verdict, limit_text, partial_text, set_json, set_text, unifi
 
 use super::clash::refuse_clashes;
 use super::dialect;
+use super::diff_colours::DiffColours;
 use super::input::{Program, is_dash};
 use super::listing::Listing;
 use super::output::{Spool, Target, print};
@@ -203,10 +204,11 @@ fn refuse_all_clashes(args: &LimitArgs, files: &[SetFile], placed: &[PathBuf]) -
 fn show(program: &str, summary: &LimitSummary, partly: bool, setup: &Setup, terminal: Terminal) {
     terminal.diagnostics(program, &summary.before.notes);
     terminal.diagnostics(program, &summary.reasons);
+    let style = terminal.style();
     terminal.text(&if partly && !summary.certified {
-        partial_text(program, summary, &setup.machine)
+        partial_text(program, summary, &setup.machine, style)
     } else {
-        limit_text(program, summary, &setup.machine)
+        limit_text(program, summary, &setup.machine, style)
     });
 }
 
@@ -218,13 +220,14 @@ fn deliver(
 ) -> Result<()> {
     if args.dry_run {
         return print(|out: &mut dyn Write| {
+            let mut out = DiffColours::new(out, terminal.out_style());
             for file in limited.files.iter().filter(|file| file.edited_lines > 0) {
                 let old = fs::File::open(&file.path)?;
                 let bytes = old.metadata()?.len();
                 let new = file.text.as_slice();
-                unified_diff(&file.name, bytes, BufReader::new(old), new, &mut *out)?;
+                unified_diff(&file.name, bytes, BufReader::new(old), new, &mut out)?;
             }
-            Ok(())
+            out.finish()
         });
     }
     let backups = together.deliver()?;

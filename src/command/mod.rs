@@ -4,6 +4,7 @@ pub mod check;
 pub mod contour;
 pub mod dialect;
 pub mod diff;
+mod diff_colours;
 pub mod excite;
 pub mod explain;
 pub mod identify;

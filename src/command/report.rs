@@ -169,6 +169,7 @@ fn report_one(
         changes: None,
         held: None,
     };
-    messages.text(&check_text(&checked, &setup.machine));
+    let style = messages.style();
+    messages.text(&check_text(&checked, &setup.machine, style));
     Ok(checked.counted())
 }

@@ -7,7 +7,8 @@ use std::io::{self, IsTerminal, Write as _};
 use clap::ColorChoice;
 use gwatt::diagnostic::Diagnostic;
 use gwatt::pipeline::Failure;
-use gwatt::report::chain;
+use gwatt::report::{Style, chain};
+use terminal_size::{Height, Width, terminal_size_of};
 
 use super::progress::{Shape, around};
 use crate::cli::ProgressArg;
@@ -16,6 +17,8 @@ use crate::cli::ProgressArg;
 #[derive(Debug, Clone, Copy)]
 pub struct Terminal {
     colour: bool,
+    /// The same for standard output.
+    out_colour: bool,
     progress: Shape,
 }
 
@@ -29,13 +32,14 @@ impl Terminal {
     pub fn new(choice: ColorChoice, progress: ProgressArg) -> Self {
         let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
         let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
-        let colour = match choice {
+        let colour = |is_terminal: bool| match choice {
             ColorChoice::Always => true,
             ColorChoice::Never => false,
-            ColorChoice::Auto => io::stderr().is_terminal() && !set("NO_COLOR") && !dumb,
+            ColorChoice::Auto => is_terminal && !set("NO_COLOR") && !dumb,
         };
         Self {
-            colour,
+            colour: colour(io::stderr().is_terminal()),
+            out_colour: colour(io::stdout().is_terminal()),
             progress: Shape::of(progress),
         }
     }
@@ -45,10 +49,27 @@ impl Terminal {
         self.progress.quiet(quiet)
     }
 
+    /// How text is set on standard output.
+    pub fn out_style(self) -> Style {
+        Style {
+            colour: self.out_colour,
+            columns: columns(terminal_size_of(io::stdout())),
+        }
+    }
+
+    /// How text is set on standard error.
+    pub fn style(self) -> Style {
+        Style {
+            colour: self.colour,
+            columns: columns(terminal_size_of(io::stderr())),
+        }
+    }
+
     /// Messages that are not shown yet, in its colours.
     pub fn messages(self) -> Messages {
         Messages {
-            colour: self.colour,
+            style: self.style(),
+            out_style: self.out_style(),
             shown: None,
             text: String::new(),
         }
@@ -105,7 +126,9 @@ impl Terminal {
 /// Messages that are kept until it is their turn, unless they are shown at once.
 #[derive(Debug)]
 pub struct Messages {
-    colour: bool,
+    style: Style,
+    /// That of standard output.
+    out_style: Style,
     /// Where they are shown.
     shown: Option<Terminal>,
     text: String,
@@ -115,10 +138,21 @@ impl Messages {
     /// Messages without colours that are not shown.
     pub fn plain() -> Self {
         Self {
-            colour: false,
+            style: Style::PLAIN,
+            out_style: Style::PLAIN,
             shown: None,
             text: String::new(),
         }
+    }
+
+    /// How its text is set.
+    pub fn style(&self) -> Style {
+        self.style
+    }
+
+    /// How text is set on standard output.
+    pub fn out_style(&self) -> Style {
+        self.out_style
     }
 
     /// What was said so far, unless it was shown at once.
@@ -160,7 +194,7 @@ impl Messages {
             alike.any(|mut first| first.any(|it| std::ptr::eq(*it, diagnostic)))
         };
         for diagnostic in diagnostics.iter().filter(|it| shown(it)) {
-            let text = diagnostic.render(file, self.colour);
+            let text = diagnostic.render(file, self.style.colour);
             self.line(text);
         }
         for (kind, alike) in &kinds {
@@ -234,4 +268,10 @@ fn lines(found: &[&Diagnostic]) -> String {
         _ => format!("{first}-{last}"),
     });
     format!("{noun} {}", ranges.collect::<Vec<_>>().join(", "))
+}
+
+/// The columns of a terminal, if it is one.
+fn columns(size: Option<(Width, Height)>) -> Option<usize> {
+    size.map(|(Width(columns), _)| usize::from(columns))
+        .filter(|columns| *columns > 0)
 }

@@ -90,7 +90,7 @@ pub(super) fn conclude(
         certified,
         slower,
         reasons: reasons.list,
-        price: None,
+        prices: Vec::new(),
         ideal: None,
     }
 }

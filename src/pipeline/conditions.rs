@@ -204,6 +204,13 @@ fn plan_conditions(machine: &Machine, summary: &Summary) -> Vec<String> {
     }
     let corner = machine.controller.planner.look_ahead.map(|it| it.corner);
     let stepped = corner.is_some_and(|corner| !matches!(corner, CornerRule::LinuxCnc { .. }));
+    if summary.ahead && modelled && corner.is_some() && !stepped {
+        conditions.push(format!(
+            "before the first G61 or G64 corners are rounded within {} mm \
+             (power_on_tolerance_mm), as the control starts",
+            machine.controller.language.power_on_tolerance_mm
+        ));
+    }
     if summary.ahead && stepped {
         conditions.push(format!(
             "the drives spread steps of speed at corners over {} ms (path.response_time_s)",

@@ -85,10 +85,10 @@ pub(super) fn limit_waiting(
     })?;
     let mut lowered = lower_further(machine, first, &mut |target| attempt(target, None, true))?;
     let Some((plan, waiting)) = waiting else {
-        lowered
-            .before
-            .notes
-            .extend(places.is_empty().then(no_place));
+        lowered.before.notes.push(match places.len() {
+            0 => no_place(),
+            places => not_enough(places),
+        });
         return Ok(lowered);
     };
     if lowered.certified && lowered.after.duration_s <= waiting.after.duration_s {
@@ -176,11 +176,23 @@ fn fewest_seconds(
     Ok(Some(best))
 }
 
+/// What is said where the program may wait, and no dwells are enough.
+fn not_enough(places: usize) -> Diagnostic {
+    let s = if places == 1 { "" } else { "s" };
+    Diagnostic::note(
+        "pauses-not-enough",
+        format!(
+            "--allow pause: dwells at {places} place{s} between rapids, before tool changes or at \
+             the end, of an hour in all, were tried and are not enough"
+        ),
+    )
+}
+
 /// What is said where the program may wait, but there is no place for it.
 fn no_place() -> Diagnostic {
     Diagnostic::note(
         "no-place-to-pause",
-        "--allow pause: there is no place to wait, between two rapids or before a tool change, \
-         outside of cycles, loops and subprograms",
+        "--allow pause: there is no place to wait, after a rapid and before another one, a tool \
+         change, a stop or the end, outside of cycles, loops and subprograms",
     )
 }

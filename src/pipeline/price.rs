@@ -15,10 +15,10 @@ use crate::diagnostic::Diagnostic;
 use crate::limit::FEED_NOT_ALLOWED;
 use crate::machine::Machine;
 
-/// Limits a program that could not be made to fit with further permissions, until one is
-/// enough: that, and the feeds which it takes, are added to `refused`, what came of it as it
-/// was asked for. Nothing is where none is enough, or where the program has so many moves
-/// that to try would take too long.
+/// Limits a program that could not be made to fit with further permissions: each that is
+/// enough by itself, or else the first of several together, and the feeds which they take, are
+/// added to `refused`, what came of it as it was asked for. Nothing is where none is enough, or
+/// where the program has so many moves that to try would take too long.
 ///
 /// # Errors
 /// See [`Failure`].
@@ -36,7 +36,11 @@ pub fn price<R: Read + Seek + Send>(
         return Ok(());
     }
     let mut feeds = Feeds::of(refused);
+    let own = how.allowed.count();
     for allowed in further(machine, how.allowed, refused) {
+        if allowed.count() > own + 1 && !refused.prices.is_empty() {
+            break;
+        }
         input.rewind().map_err(Failure::Input)?;
         let how = LimitOptions { allowed, ..how };
         let rows: Option<&mut dyn RestartRows> = (!feeds.lines.is_empty()).then_some(&mut feeds);
@@ -47,12 +51,12 @@ pub fn price<R: Read + Seek + Send>(
             Err(failure) => return Err(failure),
         };
         if found.certified {
-            refused.price = Some(Price {
+            refused.prices.push(Price {
                 allowed,
                 duration_s: [refused.before.duration_s, found.after.duration_s],
             });
             feeds.take_into(refused);
-            break;
+            feeds.lines.clear();
         }
     }
     Ok(())
@@ -132,7 +136,8 @@ impl Restart for Feeds {
     }
 }
 
-/// What may be allowed in addition, from what changes least on.
+/// What may be allowed in addition, from what changes least on: each permission by itself, then
+/// several.
 fn further(machine: &Machine, own: Allowed, refused: &LimitSummary) -> Vec<Allowed> {
     let feed = Allowed { feed: true, ..own };
     let expand = Allowed {
@@ -143,30 +148,35 @@ fn further(machine: &Machine, own: Allowed, refused: &LimitSummary) -> Vec<Allow
         expand: true,
         ..feed
     };
-    let mut all = vec![feed, expand, both];
+    let (mut single, mut several) = (vec![feed, expand], vec![both]);
     if machine.path.clearance_mm.iter().any(Option::is_some) {
-        all.push(Allowed {
+        single.push(Allowed {
             straighten: true,
             ..own
         });
-        all.push(Allowed {
+        several.push(Allowed {
             straighten: true,
             ..both
         });
     }
+    if machine.controller.language.exact_stop_word.is_some() {
+        single.push(Allowed { stop: true, ..own });
+        several.push(Allowed { stop: true, ..both });
+    }
     let over_time = &refused.after.over_time;
     if over_time.iter().any(|found| !found.rating.fits()) {
-        all.push(Allowed { pause: true, ..own });
-        all.push(Allowed {
+        single.push(Allowed { pause: true, ..own });
+        several.push(Allowed {
             pause: true,
             ..both
         });
     }
     let mut tried = vec![own];
-    all.retain(|allowed| {
+    single.extend(several);
+    single.retain(|allowed| {
         let is_new = !tried.contains(allowed);
         tried.push(*allowed);
         is_new
     });
-    all
+    single
 }

@@ -133,8 +133,9 @@ pub struct LimitSummary {
     pub slower: bool,
     /// Why it does not, each with its line; `Summary::KEPT` at most.
     pub reasons: Vec<Diagnostic>,
-    /// What would make it fit, where that was asked for: see [`price`](super::price).
-    pub price: Option<Price>,
+    /// What would make it fit, where that was asked for, what changes least first: see
+    /// [`price`](super::price).
+    pub prices: Vec<Price>,
     /// What a word for acceleration would bring, where that was asked for and is worth a
     /// line: see [`ideal`](super::ideal).
     pub ideal: Option<Ideal>,

@@ -257,8 +257,12 @@ pub(super) fn grid(name: &str, frame: &Frame, time: &Scale, value: &Scale) -> St
         "<text x=\"{left}\" y=\"{}\" font-weight=\"bold\">{name}</text>\n",
         top - 8.0
     );
+    // In kW as in all texts, where there are any.
+    let kilo = *unit == " W" && value.marks().any(|mark| mark.abs() >= 1e3);
+    let (size, unit) = if kilo { (1e3, " kW") } else { (1.0, *unit) };
     for mark in value.marks() {
         let y = value.at(mark);
+        let mark = mark / size;
         let _ = writeln!(
             text,
             "<path d=\"M{left} {y:.2}H{right}\" stroke=\"#dddddd\"/>\

@@ -9,6 +9,7 @@ use super::aligned::aligned;
 use super::checked::Verdict;
 use super::figure::Figure;
 use super::quantity::{duration, energy, power};
+use super::style::Style;
 use crate::pipeline::{Failure, OverTime, Summary};
 
 /// Changes that are listed a program.
@@ -93,7 +94,7 @@ fn exceeded_beyond<'a>(one: &'a Summary, other: &'a Summary) -> impl Iterator<It
 
 /// A table with a line a program, and below it what begins and ceases to fit.
 #[must_use]
-pub fn comparison_text(comparisons: &[Comparison], from: &str, to: &str) -> String {
+pub fn comparison_text(comparisons: &[Comparison], from: &str, to: &str, style: Style) -> String {
     let mut rows = vec![
         [
             "program",
@@ -124,26 +125,35 @@ pub fn comparison_text(comparisons: &[Comparison], from: &str, to: &str) -> Stri
             comparison.begin.to_string(),
             comparison.cease.to_string(),
         ]);
-        changes.push_str(&listed(comparison));
-        for (one, other, verb) in [(after, before, "ceases"), (before, after, "begins")] {
+        changes.push_str(&listed(comparison, style));
+        for (one, other, begins) in [(after, before, false), (before, after, true)] {
             for limit in exceeded_beyond(one, other) {
-                let _ = writeln!(changes, "{program}: {} {verb} to fit", limit.title());
+                let fit = begins_or_ceases(begins, style);
+                let _ = writeln!(changes, "{program}: {} {fit}", limit.title());
             }
         }
     }
     format!("from {from}\nto   {to}\n\n{}{changes}", aligned(&rows, ""))
 }
 
-fn listed(comparison: &Comparison) -> String {
+fn begins_or_ceases(begins: bool, style: Style) -> String {
+    if begins {
+        style.good("begins to fit")
+    } else {
+        style.bad("ceases to fit")
+    }
+}
+
+fn listed(comparison: &Comparison, style: Style) -> String {
     let mut text = String::new();
     for change in &comparison.changes {
-        let verb = if change.begins { "begins" } else { "ceases" };
+        let fit = begins_or_ceases(change.begins, style);
         let program = &comparison.program;
         let file = match change.file.as_str() {
             "" => String::new(),
             file => format!(" of {file}"),
         };
-        let _ = writeln!(text, "{program}: line {}{file} {verb} to fit", change.line);
+        let _ = writeln!(text, "{program}: line {}{file} {fit}", change.line);
     }
     let more = comparison.begin + comparison.cease - comparison.changes.len() as u64;
     if more > 0 {

@@ -130,6 +130,8 @@ struct LimitTail<'a> {
     reasons: Vec<Finding<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     price: Option<PriceRecord>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    prices: Vec<PriceRecord>,
     #[serde(skip_serializing_if = "Option::is_none")]
     with_acceleration_word: Option<IdealRecord<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -322,7 +324,8 @@ fn limited<'a>(
         certified: summary.certified,
         pauses: PauseRecord::list(summary),
         reasons: summary.reasons.iter().map(Finding::from).collect(),
-        price: summary.price.as_ref().map(PriceRecord::from),
+        price: summary.prices.first().map(PriceRecord::from),
+        prices: summary.prices.iter().map(PriceRecord::from).collect(),
         with_acceleration_word: summary.ideal.as_ref().map(IdealRecord::from),
         over_time: OverTimeRecord::list(&summary.before),
         over_time_after: OverTimeRecord::list(&summary.after),

@@ -8,6 +8,7 @@ use std::time::Duration;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use super::checked::{Checked, Verdict};
+use super::style::Style;
 use super::text::check_text;
 use crate::machine::Machine;
 use crate::pipeline::Failure;
@@ -26,7 +27,7 @@ pub fn junit(checked: &[Checked], machine: &Machine, mut out: impl Write) -> io:
 }
 
 fn test_case(checked: &Checked, machine: &Machine) -> TestCase {
-    let text = check_text(checked, machine);
+    let text = check_text(checked, machine, Style::PLAIN);
     let title = text.lines().next().unwrap_or_default().to_owned();
     let status = match &checked.outcome {
         Ok(summary) if summary.only_subprograms() => {

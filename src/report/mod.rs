@@ -40,6 +40,7 @@ mod sarif;
 mod series;
 mod size;
 mod spindle;
+mod style;
 mod text;
 #[cfg(feature = "html")]
 mod tune_page;
@@ -85,6 +86,7 @@ pub use sarif::sarif;
 pub use series::{SeriesColumns, SeriesRows};
 pub use size::{size_chart, size_csv, size_json, size_text, size_verdict};
 pub use spindle::{SpindleRows, spindle_text};
+pub use style::Style;
 pub use text::{axis_table, check_text, limit_text, partial_text, set_text};
 #[cfg(feature = "html")]
 pub use tune_page::tune_page;

@@ -71,14 +71,16 @@ impl Serialize for Summary {
 impl Serialize for LimitSummary {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let reasons: Vec<_> = self.reasons.iter().map(Finding::from).collect();
-        let mut out = serializer.serialize_struct("LimitSummary", 8)?;
+        let mut out = serializer.serialize_struct("LimitSummary", 9)?;
         out.serialize_field("before", &self.before)?;
         out.serialize_field("after", &self.after)?;
         out.serialize_field("edited_lines", &self.edited_lines)?;
         out.serialize_field("certified", &self.certified)?;
         out.serialize_field("pauses", &PauseRecord::list(self))?;
         out.serialize_field("reasons", &reasons)?;
-        out.serialize_field("price", &self.price.as_ref().map(PriceRecord::from))?;
+        out.serialize_field("price", &self.prices.first().map(PriceRecord::from))?;
+        let prices: Vec<_> = self.prices.iter().map(PriceRecord::from).collect();
+        out.serialize_field("prices", &prices)?;
         let ideal = self.ideal.as_ref().map(IdealRecord::from);
         out.serialize_field("with_acceleration_word", &ideal)?;
         out.end()

@@ -5,10 +5,11 @@ use std::fmt::Write as _;
 use super::aligned::aligned;
 use super::checked::{Checked, chain};
 use super::figure::round_to_digits;
-use super::finding::{LINE_CHARS, is_regenerative};
+use super::finding::is_regenerative;
 use super::over_time::over_time_text;
 use super::quantity::{duration, percent, power, three_digits};
-use crate::diagnostic::{Severity, excerpt};
+use super::style::Style;
+use crate::diagnostic::Severity;
 use crate::machine::{ALL_AXES, Axis, AxisKind, Machine};
 use crate::pipeline::{Certificate, Failure, LimitSummary, SetSummary, Summary, Unfit};
 use crate::units::SECONDS_PER_MINUTE;
@@ -18,40 +19,45 @@ const PAUSES_SHOWN: usize = 20;
 
 /// What `check` says of one program: one line where it fits.
 #[must_use]
-pub fn check_text(checked: &Checked, machine: &Machine) -> String {
-    let mut text = verdict_text(checked, machine);
+pub fn check_text(checked: &Checked, machine: &Machine, style: Style) -> String {
+    let mut text = verdict_text(checked, machine, style);
     if let Some(held) = &checked.held {
         text.push_str(&held.text());
     }
     text
 }
 
-fn verdict_text(checked: &Checked, machine: &Machine) -> String {
+fn verdict_text(checked: &Checked, machine: &Machine, style: Style) -> String {
     let program = &checked.program;
+    let no = style.bad("does not fit");
     match &checked.outcome {
         Ok(summary) if summary.only_subprograms() => {
             format!("{program}: only subprograms: nothing of it was looked at\n")
         }
         Ok(summary) if summary.fits() => {
-            let text = format!("{program}: fits: {}\n", figures(summary, machine));
+            let fits = style.good("fits");
+            let text = format!("{program}: {fits}: {}\n", figures(summary, machine));
             text + &over_time_text(summary)
         }
         Ok(summary) if summary.unfit_count == 0 => {
-            let text = format!("{program}: does not fit: {}\n", figures(summary, machine));
+            let text = format!("{program}: {no}: {}\n", figures(summary, machine));
             text + &over_time_text(summary)
         }
         Ok(summary) => {
             let count = moves(summary.unfit_count);
             let mut text = format!(
-                "{program}: does not fit: {count} of {} over the limit; {}\n",
+                "{program}: {no}: {count} of {} over the limit; {}\n",
                 summary.moves,
                 figures(summary, machine)
             );
-            text.push_str(&worst(summary));
+            text.push_str(&worst(summary, style));
             text.push_str(&over_time_text(summary));
             text
         }
-        Err(failure) => format!("{program}: refused: {}\n", refusal(failure)),
+        Err(failure) => {
+            let refused = style.bad("refused");
+            format!("{program}: {refused}: {}\n", refusal(failure))
+        }
     }
 }
 
@@ -95,26 +101,31 @@ fn refusal(failure: &Failure) -> String {
 }
 
 /// The worst moves, one a line, with the line of the program and what helps.
-fn worst(summary: &Summary) -> String {
+fn worst(summary: &Summary, style: Style) -> String {
     // A cycle has many moves that are alike.
-    let mut alike: Vec<([String; 5], u64)> = Vec::new();
+    let mut alike: Vec<(Shown<'_>, u64)> = Vec::new();
     for unfit in &summary.worst {
-        let row = unfit_row(unfit);
+        let row = Shown::of(unfit);
         match alike.iter_mut().find(|(known, _)| *known == row) {
             Some((_, count)) => *count += 1,
             None => alike.push((row, 1)),
         }
     }
-    let rows: Vec<[String; 5]> = alike
-        .into_iter()
-        .map(|(mut row, count)| {
-            if let Some(shown) = row.last_mut().filter(|_| count > 1) {
-                let _ = write!(shown, "  ({})", moves(count));
-            }
-            row
-        })
-        .collect();
-    let mut text = aligned(&rows, "  ");
+    let width = |cell: usize| {
+        let cells = alike.iter().map(|(row, _)| row.cells[cell].chars().count());
+        cells.max().unwrap_or(0)
+    };
+    let taken: usize = INDENT.len() + (0..4).map(|cell| width(cell) + 2).sum::<usize>();
+    let rows = alike.iter().map(|(row, count)| {
+        let mut after = row.after.clone();
+        if *count > 1 {
+            let _ = write!(after, "  ({})", moves(*count));
+        }
+        let line = style.cut(row.text, taken + after.chars().count());
+        let [line_number, what, limit, overload] = row.cells.clone();
+        [line_number, what, limit, overload, line + &after]
+    });
+    let mut text = aligned(&rows.collect::<Vec<_>>(), INDENT);
     let shown: u64 = summary.worst.iter().map(|unfit| unfit.runs).sum();
     if summary.unfit_count > shown {
         let more = summary.unfit_count - shown;
@@ -123,54 +134,83 @@ fn worst(summary: &Summary) -> String {
     text
 }
 
-fn unfit_row(unfit: &Unfit) -> [String; 5] {
-    let limit = if is_regenerative(unfit) {
-        let limit_w = unfit.regen_limit_w.unwrap_or_default();
-        format!("{} of {} fed back", power(unfit.regen_w), power(limit_w))
-    } else {
-        format!("{} of {}", power(unfit.peak_w), power(unfit.limit_w))
-    };
-    let mut shown = excerpt(unfit.text.trim_ascii(), LINE_CHARS);
-    if unfit.runs > 1 {
-        let _ = write!(shown, "  ({} runs)", unfit.runs);
+/// What lists are set in by.
+const INDENT: &str = "  ";
+
+/// A move of the list of the worst.
+#[derive(PartialEq)]
+struct Shown<'a> {
+    cells: [String; 4],
+    /// The line of the program.
+    text: &'a [u8],
+    /// What stands after it.
+    after: String,
+}
+
+impl<'a> Shown<'a> {
+    fn of(unfit: &'a Unfit) -> Self {
+        let limit = if is_regenerative(unfit) {
+            let limit_w = unfit.regen_limit_w.unwrap_or_default();
+            format!("{} of {} fed back", power(unfit.regen_w), power(limit_w))
+        } else {
+            format!("{} of {}", power(unfit.peak_w), power(unfit.limit_w))
+        };
+        let mut after = String::new();
+        if unfit.runs > 1 {
+            let _ = write!(after, "  ({} runs)", unfit.runs);
+        }
+        if !unfit.file.is_empty() {
+            let _ = write!(after, "  in {}", unfit.file);
+        }
+        if !unfit.help.is_empty() {
+            let _ = write!(after, "  → {}", unfit.help);
+        }
+        Self {
+            cells: [
+                format!("line {}", unfit.line),
+                format!("{} {}", unfit.kind.name(), unfit.axes),
+                limit,
+                percent(unfit.overload),
+            ],
+            text: unfit.text.trim_ascii(),
+            after,
+        }
     }
-    if !unfit.file.is_empty() {
-        let _ = write!(shown, "  in {}", unfit.file);
-    }
-    if !unfit.help.is_empty() {
-        let _ = write!(shown, "  → {}", unfit.help);
-    }
-    [
-        format!("line {}", unfit.line),
-        format!("{} {}", unfit.kind.name(), unfit.axes),
-        limit,
-        percent(unfit.overload),
-        shown,
-    ]
 }
 
 /// What `limit` did to a program; its reasons, if it could not, are shown
 /// apart with the lines under them.
 #[must_use]
-pub fn limit_text(program: &str, summary: &LimitSummary, machine: &Machine) -> String {
+pub fn limit_text(
+    program: &str,
+    summary: &LimitSummary,
+    machine: &Machine,
+    style: Style,
+) -> String {
     let (before, after) = (&summary.before, &summary.after);
+    if before.only_subprograms() && summary.certified {
+        return format!("{program}: only subprograms: nothing of it was looked at\n");
+    }
     if !summary.certified {
         let count = summary.reasons.len();
         let noun = if count == 1 { "reason" } else { "reasons" };
         return format!(
-            "{program}: cannot be made to fit ({count} {noun}), nothing is written; it draws {}\n{}{}{}{}",
+            "{program}: {} ({count} {noun}), nothing is written; it draws {}\n{}{}{}{}",
+            style.bad("cannot be made to fit"),
             figures(before, machine),
-            worst(after),
+            worst(after, style),
             over_time_text(after),
             ideal_text(summary),
             price_text(summary)
         );
     }
     let mut text = if summary.edited_lines == 0 {
-        format!("{program}: fits as it is: {}\n", figures(before, machine))
+        let fits = style.good("fits as it is");
+        format!("{program}: {fits}: {}\n", figures(before, machine))
     } else {
         format!(
-            "{program}: fits now: {}; before: peak {}, {}; {} changed\n",
+            "{program}: {}: {}; before: peak {}, {}; {} changed\n",
+            style.good("fits now"),
             figures(after, machine),
             power(before.peak_w),
             duration(before.duration_s),
@@ -189,18 +229,20 @@ pub fn limit_text(program: &str, summary: &LimitSummary, machine: &Machine) -> S
     text
 }
 
-/// What would make the program fit; nothing where that is not known.
+/// What would make the program fit, a line for each; nothing where that is not known.
 fn price_text(summary: &LimitSummary) -> String {
-    let Some(price) = &summary.price else {
-        return String::new();
-    };
-    let [before_s, after_s] = price.duration_s;
-    format!(
-        "with --allow {} it fits, in {} instead of {}\n",
-        price.allowed.names(),
-        duration(after_s),
-        duration(before_s)
-    )
+    let mut text = String::new();
+    for price in &summary.prices {
+        let [before_s, after_s] = price.duration_s;
+        let _ = writeln!(
+            text,
+            "with --allow {} it fits, in {} instead of {}",
+            price.allowed.names(),
+            duration(after_s),
+            duration(before_s)
+        );
+    }
+    text
 }
 
 /// What a word for acceleration would bring; nothing where that is not worth a line.
@@ -264,16 +306,22 @@ fn pauses_text(summary: &LimitSummary) -> String {
 
 /// What came of a program that is written though not all of its moves fit.
 #[must_use]
-pub fn partial_text(program: &str, summary: &LimitSummary, machine: &Machine) -> String {
+pub fn partial_text(
+    program: &str,
+    summary: &LimitSummary,
+    machine: &Machine,
+    style: Style,
+) -> String {
     let (before, after) = (&summary.before, &summary.after);
     format!(
-        "{program}: not certified: {} still over the limit; {}; before: peak {}, {}; {} changed\n{}{}{}{}",
+        "{program}: {}: {} still over the limit; {}; before: peak {}, {}; {} changed\n{}{}{}{}",
+        style.bad("not certified"),
         moves(after.unfit_count),
         figures(after, machine),
         power(before.peak_w),
         duration(before.duration_s),
         lines(summary.edited_lines),
-        worst(after),
+        worst(after, style),
         over_time_text(after),
         ideal_text(summary),
         price_text(summary)

@@ -57,10 +57,20 @@ fn dialect_says_what_it_saw() {
              b.nc: {RELATIVES} {fanucs}; read without errors as {RELATIVES}\n\
              c.h: none: this is a Heidenhain conversational program (Klartext); only programs of \
              G-code words are read: have it posted as DIN/ISO\n\
-             d.gcode: not clear: there are no marks of a particular controller\n"
+             d.gcode: not clear: there are no marks of a particular controller; all profiles \
+             read it without errors\n"
         )
     );
     assert_eq!(found.code, 2);
+    // Without marks all are tried, without a machine too.
+    shop.put("e.nc", "G0 X1\n#1=2\nG0 X#1\n");
+    shop.put("f.nc", "G0 X1\nG0 X1..2\n");
+    let found = shop.run(&["dialect", "e.nc", "f.nc"]);
+    let unclear = "not clear: there are no marks of a particular controller";
+    let expected = format!("e.nc: {unclear}; read without errors as iso, linuxcnc, ");
+    assert!(found.stdout.starts_with(&expected), "{}", found.stdout);
+    let none = format!("f.nc: {unclear}; no profile reads it without errors\n");
+    assert!(found.stdout.ends_with(&none), "{}", found.stdout);
 }
 
 /// What is no program has no controller: no text, a line without end, nothing or comments.
@@ -306,6 +316,11 @@ fn a_file_of_subprograms_is_said_to_be_one() {
         "{}",
         read.stdout
     );
+    // No certificate speaks of what was not looked at.
+    let limited = shop.run(&["limit", "subs.ngc", "-m", "linuxcnc-mill"]);
+    assert_eq!(limited.code, 0, "{}", limited.stderr);
+    let said = "subs.ngc: only subprograms: nothing of it was looked at\n";
+    assert!(limited.stderr.ends_with(said), "{}", limited.stderr);
     let read = shop.run(&[
         "check",
         "subs.ngc",

@@ -50,6 +50,39 @@ fn the_price_is_what_limit_asks_for() {
     }
 }
 
+/// Each permission that is enough by itself is named, and is enough.
+#[test]
+fn each_single_permission_that_is_enough_has_its_price() {
+    let shop = mill(350.0);
+    shop.put(
+        "part.nc",
+        "G21 G90 G64\nG1 X10. F20000.\nX20. Y2.\nX30.\nX40. Y2.\nM30\n",
+    );
+    let (code, _, shown) = shop.run("limit part.nc -o fit.nc --json refused.json");
+    assert_eq!(code, 1, "{shown}");
+    let refused: serde_json::Value = serde_json::from_str(&shop.get("refused.json")).unwrap();
+    let prices = refused["prices"].as_array().expect("prices");
+    let allowed: Vec<&str> = prices
+        .iter()
+        .filter_map(|it| it["allow"].as_str())
+        .collect();
+    assert_eq!(allowed, ["feed", "stop"], "{shown}");
+    assert_eq!(refused["price"], prices[0]);
+    for (allow, price) in allowed.iter().zip(prices) {
+        let line = format!("with --allow {allow} it fits, in ");
+        assert!(shown.contains(&line), "{shown}");
+        let (code, _, errors) = shop.run(&format!(
+            "limit part.nc -o fit.nc --allow {allow} --json fit.json"
+        ));
+        assert_eq!(code, 0, "{errors}");
+        let fit: serde_json::Value = serde_json::from_str(&shop.get("fit.json")).unwrap();
+        assert_eq!(
+            fit["duration_after_s"], price["duration_after_s"],
+            "{allow}"
+        );
+    }
+}
+
 /// What a reason says of the feed is what is written with the permission.
 #[test]
 fn the_feed_that_is_named_is_the_one_that_is_written() {

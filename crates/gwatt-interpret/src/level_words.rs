@@ -46,9 +46,10 @@ impl Control<'_> {
                     "what this level makes of the accelerations is not known: the machine file has {}",
                     knob.name
                 );
-                run.report
-                    .error("level-unknown", message, span)
-                    .help("give it under [[levels]] of the machine file");
+                run.report.error("level-unknown", message, span).help(
+                    "give it under [[levels]] of the machine file; a word that ends a level or \
+                         means the same as one goes into its list: word = [\"G5.1 Q0\", \"G8 P0\"]",
+                );
             }
         }
     }

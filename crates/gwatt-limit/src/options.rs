@@ -113,6 +113,17 @@ impl Allowed {
     /// The names that the command line has for it, with commas.
     #[must_use]
     pub fn names(self) -> String {
+        let names: Vec<&str> = self.granted().collect();
+        names.join(",")
+    }
+
+    /// How many permissions these are.
+    #[must_use]
+    pub fn count(self) -> usize {
+        self.granted().count()
+    }
+
+    fn granted(self) -> impl Iterator<Item = &'static str> {
         let all = [
             (self.feed, "feed"),
             (self.expand, "expand"),
@@ -121,7 +132,7 @@ impl Allowed {
             (self.pause, "pause"),
             (self.unverified, "unverified"),
         ];
-        let names = all.iter().filter(|(allowed, _)| *allowed);
-        names.map(|(_, name)| *name).collect::<Vec<_>>().join(",")
+        let granted = all.into_iter().filter(|(allowed, _)| *allowed);
+        granted.map(|(_, name)| name)
     }
 }

@@ -119,10 +119,15 @@ impl Solver<'_> {
         Obstacle::new(
             "no-solution",
             format!(
-                "no value of the permitted words brings {:.0} W down to the limit",
-                case.assessment.demand.peak_w
+                "no value of the permitted words brings {} W down to the limit",
+                figure(case.assessment.demand.peak_w)
             ),
-            "base load and friction leave too little: a larger converter, or another strategy",
+            if self.may_go_slower(case) {
+                "at its speed base load and friction leave too little: --allow feed permits lower \
+                 feeds"
+            } else {
+                "base load and friction leave too little: a larger converter, or another strategy"
+            },
         )
     }
 
@@ -143,6 +148,13 @@ impl Solver<'_> {
             "--allow feed, "
         };
         Obstacle::new("no-solution", message, format!("{feed}{help}"))
+    }
+
+    /// Whether a lower feed is a way that was not permitted.
+    fn may_go_slower(&self, case: Case<'_>) -> bool {
+        let Case { mv, permit, .. } = case;
+        let cuts = mv.kind != MoveKind::Rapid && !permit.positions;
+        cuts && permit.edit && permit.feed_word && !self.how.allowed.feed
     }
 
     fn back_limit_w(&self, case: Case<'_>) -> Option<f64> {

@@ -98,12 +98,13 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
     }
 
     /// Whether the program may wait between a rapid and the block after it: the tool is in
-    /// the air, and goes on there, or is changed.
+    /// the air, and goes on there, or is changed, or the program stops or ends.
     fn is_place(&self, entry: &Entry, last: &Move) -> bool {
         let facts = &entry.facts;
         let changes = entry.steps.iter().any(|step| {
+            use ActionKind::{End, Stop, ToolChange, ToolSelect};
             matches!(step, Step::Action(action)
-                if matches!(action.kind, ActionKind::ToolChange | ActionKind::ToolSelect))
+                if matches!(action.kind, ToolChange | ToolSelect | Stop | End))
         });
         let goes_on = matches!(entry.steps.first(), Some(Step::Move(mv))
             if mv.kind == MoveKind::Rapid && mv.moves_axes() && mv.loads == last.loads);

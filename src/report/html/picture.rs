@@ -97,7 +97,11 @@ pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
             let right = WIDTH - RIGHT;
             let _ = writeln!(
                 text,
-                "<path d=\"M{LEFT} {y:.2}H{right}\" stroke=\"#b00020\" stroke-dasharray=\"6 4\"/>"
+                "<path d=\"M{LEFT} {y:.2}H{right}\" stroke=\"#b00020\" stroke-dasharray=\"6 4\"/>\
+                 <text x=\"{}\" y=\"{:.2}\" text-anchor=\"end\" fill=\"#b00020\">{}</text>",
+                right - 4.0,
+                y - 4.0,
+                power(*limit_w)
             );
         }
         out.write_all(text.as_bytes())?;
