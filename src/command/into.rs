@@ -42,7 +42,8 @@ pub fn written(path: Option<&Path>, is_refused: bool, terminal: Terminal) -> Ver
 /// A result on its way into a machine file.
 #[derive(Debug)]
 pub struct Merged {
-    spool: Spool,
+    /// `None`: it has these figures already.
+    spool: Option<Spool>,
 }
 
 impl Merged {
@@ -75,19 +76,29 @@ impl Merged {
         }
         let text = fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?;
         let merged = change(&name, &text)?;
+        if merged == text {
+            return Ok(Self { spool: None });
+        }
         let mut spool = Target::new(path)?.spool()?;
         spool
             .write_all(merged.as_bytes())
             .with_context(|| format!("cannot write {name}"))?;
-        Ok(Self { spool })
+        Ok(Self { spool: Some(spool) })
     }
 
     /// Puts the new file in place of the old one, which keeps another name.
     pub fn deliver(self, path: &Path, terminal: Terminal) -> Result<()> {
+        let Some(spool) = self.spool else {
+            terminal.note(format_args!(
+                "{} is as it was: what it says covers what was found",
+                path.display()
+            ));
+            return Ok(());
+        };
         let real =
             fs::canonicalize(path).with_context(|| format!("cannot write {}", path.display()))?;
         let backup = back_up(&real)?;
-        self.spool.deliver()?;
+        spool.deliver()?;
         terminal.note(format_args!(
             "{} has the new figures; as it was it is {}",
             path.display(),

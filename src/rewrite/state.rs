@@ -25,6 +25,9 @@ pub(super) fn motion_word(motion: Motion) -> Option<String> {
     Some(format!("G{}", digit as char))
 }
 
+/// Decimals up to which a shorter number of the same length is looked for.
+const SHORT_DECIMALS: usize = 15;
+
 impl Mark {
     /// The mark of a modal state.
     #[must_use]
@@ -63,9 +66,15 @@ impl Mark {
 
     /// A word of a length, where it can be written exactly.
     fn length_word(&self, letter: char, length_mm: f64) -> Option<String> {
-        let text = format!("{}", length_mm / self.mm_per_unit);
-        let read: f64 = text.parse().ok()?;
-        (read * self.mm_per_unit == length_mm).then(|| format!(" {letter}{text}"))
+        let length = length_mm / self.mm_per_unit;
+        // The shortest number that is read as that length.
+        let shorter = (0..=SHORT_DECIMALS).map(|decimals| format!("{length:.decimals$}"));
+        let mut texts = shorter.chain([length.to_string()]);
+        let is_it = |text: &String| {
+            let read = text.parse::<f64>();
+            read.is_ok_and(|read| read * self.mm_per_unit == length_mm)
+        };
+        texts.find(is_it).map(|text| format!(" {letter}{text}"))
     }
 
     /// Whether F means length per minute.
@@ -111,4 +120,30 @@ pub struct FeedValue {
 pub(super) struct Written {
     pub(super) motion: Motion,
     pub(super) feed: Option<FeedValue>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Mark;
+    use crate::interpret::{Corner, FeedMode, Motion};
+
+    /// 0.0008 · 25.4 / 25.4 is 0.0008000000000000001.
+    #[test]
+    fn tolerances_come_back_as_they_were_written() {
+        let mark = |tolerance: f64, join: f64, mm_per_unit: f64| Mark {
+            motion: Motion::Rapid,
+            feed: None,
+            feed_mode: FeedMode::PerMinute,
+            feed_mode_word: 940,
+            mm_per_unit,
+            corner: Some(Corner::Round {
+                tolerance_mm: tolerance * mm_per_unit,
+                join_mm: join * mm_per_unit,
+            }),
+        };
+        let words = mark(0.002, 0.0008, 25.4).blend_words();
+        assert_eq!(words.as_deref(), Some("G64 P0.002 Q0.0008"));
+        let words = mark(0.05, 0.05, 1.0).blend_words();
+        assert_eq!(words.as_deref(), Some("G64 P0.05"));
+    }
 }

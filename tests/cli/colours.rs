@@ -75,9 +75,9 @@ fn differences_have_colours() {
     assert_eq!(shown, coloured);
     let both = super::Shop::new();
     let weak = shop.get("mill.toml");
-    both.put("part.nc", &shop.get("part.nc"));
+    both.put("part.nc", shop.get("part.nc"));
     both.put("weak.toml", &weak);
-    both.put("strong.toml", &weak.replace("= 400", "= 100000"));
+    both.put("strong.toml", weak.replace("= 400", "= 100000"));
     for (from, to, verdict) in [
         (
             "weak.toml",

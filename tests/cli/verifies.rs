@@ -125,8 +125,13 @@ fn the_margin_goes_into_the_machine_file() {
         .parse()
         .unwrap();
     assert!((margin - 0.074).abs() < 0.01, "{margin}");
-    // With it the recording is covered.
+    // With it the recording is covered, and there is nothing more to write.
     assert_eq!(shop.run(&VERIFY).code, 0);
+    let again = shop.run(&into);
+    assert_eq!(again.code, 0, "{}", again.stderr);
+    let kept = "mill.toml is as it was: what it says covers what was found";
+    assert!(again.stderr.contains(kept), "{}", again.stderr);
+    assert_eq!(shop.get("mill.toml.bak"), before);
 }
 
 #[test]

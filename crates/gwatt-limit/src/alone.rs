@@ -19,30 +19,29 @@ const STEPS_MOST: u8 = 10;
 /// The share of the power that each step after the first leaves.
 const LESS_A_STEP: f64 = 0.85;
 
-impl Solver<'_> {
-    /// Solves a move next to others that is lowered by its acceleration alone: first by
-    /// itself, since it may never reach the speed that its neighbours could carry it up to.
-    ///
-    /// # Errors
-    /// What stands in the way.
-    pub(super) fn step_by_step(
-        &self,
-        depth: u8,
-        solved: impl Fn(Ends) -> Result<Change, Obstacle>,
-    ) -> Result<Change, Obstacle> {
-        if depth <= STEPS {
-            // At its ends it will be slower than it was, if its neighbours are.
-            let next = Ends::Alone(depth + 1);
-            return solved(Ends::Alone(depth)).or_else(|_| solved(next));
-        }
-        solved(Ends::Any(depth - STEPS)).or_else(|obstacle| {
-            if depth > STEPS_MOST {
-                return Err(obstacle);
-            }
-            solved(Ends::Alone(depth)).map_err(|_| obstacle)
-        })
+/// Solves a move next to others that is lowered by its acceleration alone: first by
+/// itself, since it may never reach the speed that its neighbours could carry it up to.
+///
+/// # Errors
+/// What stands in the way.
+pub(super) fn step_by_step(
+    depth: u8,
+    solved: impl Fn(Ends) -> Result<Change, Obstacle>,
+) -> Result<Change, Obstacle> {
+    if depth <= STEPS {
+        // At its ends it will be slower than it was, if its neighbours are.
+        let next = Ends::Alone(depth + 1);
+        return solved(Ends::Alone(depth)).or_else(|_| solved(next));
     }
+    solved(Ends::Any(depth - STEPS)).or_else(|obstacle| {
+        if depth > STEPS_MOST {
+            return Err(obstacle);
+        }
+        solved(Ends::Alone(depth)).map_err(|_| obstacle)
+    })
+}
 
+impl Solver<'_> {
     /// Whether a move next to others has to fit by its acceleration alone, as far as a plan
     /// shows how they run. In pieces it is another matter.
     pub(super) fn by_accel_alone(&self, case: Case<'_>, levers: &Levers) -> bool {

@@ -1,5 +1,6 @@
 //! What is decided about a move by itself, by strategy and law.
 
+use super::alone::step_by_step;
 use super::case::{Case, Ends};
 use super::change::{Change, Permit};
 use super::law;
@@ -55,7 +56,7 @@ impl Solver<'_> {
         }
         match ends {
             Ends::Rest => solved(Ends::Alone(0)),
-            Ends::Any(depth) => self.step_by_step(depth, solved),
+            Ends::Any(depth) => step_by_step(depth, solved),
             Ends::Alone(_) => solved(ends),
         }
     }
