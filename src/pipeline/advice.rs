@@ -76,11 +76,13 @@ impl<'m> Adviser<'m> {
         if assessment.blended && !assessment.ahead {
             return NEIGHBOURS_HELP.to_owned();
         }
-        let per_minute = at.feed_mode == FeedMode::PerMinute;
+        // Under G93 each block has an F of its own.
+        let by_f = at.feed_mode != FeedMode::PerRevolution
+            && !(at.feed_mode == FeedMode::InverseTime && at.compensates);
         let printer = &self.machine.controller.language.printer;
         let permit = Permit {
             edit: true,
-            feed_word: per_minute,
+            feed_word: by_f,
             as_feed: true,
             exact_stop: false,
             stands: mv.path_mode == crate::machine::PathMode::ExactStop,

@@ -202,7 +202,7 @@ impl Entry {
                 "its feed is worked out by the program",
             ),
             (
-                self.feed_mode == FeedMode::InverseTime && !apart,
+                self.feed_mode == FeedMode::InverseTime && !apart && !self.has_its_own_time(),
                 "its feed is an inverse time (G93)",
             ),
             (
@@ -369,6 +369,11 @@ impl Entry {
             let plain = |byte: &u8| byte.is_ascii_digit() || b".+- \t".contains(byte);
             !word.number.of(&self.text).iter().all(plain)
         })
+    }
+
+    /// Whether its F under G93 is the time of one move, that a lower one makes longer.
+    fn has_its_own_time(&self) -> bool {
+        self.moves == 1 && self.facts.feed_word.is_some() && !self.facts.compensated
     }
 
     /// Whether one of its words may say what F means.

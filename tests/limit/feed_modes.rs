@@ -100,6 +100,67 @@ fn an_inverse_time_has_no_feed_to_put_back() {
     ");
 }
 
+/// F is blocks a minute under G93: a lower one makes its own block last longer, and no other.
+/// From 400 mm in 0.6 s, F100, to what 300 W leave: the F of a block of twice the way is half.
+#[test]
+fn an_inverse_time_is_lowered_block_by_block() {
+    let lowered = |controller: &str, program: &str| {
+        let shop = shop(controller, 300.0);
+        shop.limited(program, "--allow feed")
+    };
+    let f = |text: &str, line: usize| -> f64 {
+        let line = text.lines().nth(line).expect("a line");
+        let number = line.split_once('F').expect(line).1;
+        number.trim_end_matches('.').parse().expect(line)
+    };
+    for controller in ["linuxcnc", "fanuc", "haas", "siemens", "grbl"] {
+        let head = if controller == "siemens" {
+            "G71 G90 G60 G93"
+        } else {
+            "G21 G90 G61.1 G93"
+        };
+        let head = match controller {
+            "fanuc" | "haas" => "G21 G90 G61 G93",
+            "grbl" => "G21 G90 G93",
+            _ => head,
+        };
+        let program = format!("{head}\nG1 X400. F100.\nX0. F2.\nG1 X800. F50.\nG94\nM30\n");
+        let text = lowered(controller, &program);
+        let (first, twice) = (f(&text, 1), f(&text, 3));
+        assert!(first < 99.0 && text.contains("\nX0. F2.\nG1"), "{text}");
+        assert!(
+            (2.0 * twice / first - 1.0).abs() < 2e-4,
+            "{controller}: {text}"
+        );
+        // Nothing else is touched.
+        let others = |text: &str| -> Vec<String> {
+            let lines = text
+                .lines()
+                .map(|line| line.split('F').next().unwrap_or(""));
+            lines.map(str::to_owned).collect()
+        };
+        assert_eq!(others(&text), others(&program));
+    }
+    // In inches too, and with rotary axes next to linear ones: the way is that of all.
+    let inches = lowered("linuxcnc", "G20 G90 G61.1 G93\nG1 X16 Y4 F100\nG94\nM2\n");
+    let mm = lowered(
+        "linuxcnc",
+        "G21 G90 G61.1 G93\nG1 X406.4 Y101.6 F100\nG94\nM2\n",
+    );
+    assert!(
+        (f(&inches, 1) / f(&mm, 1) - 1.0).abs() < 1e-4,
+        "{inches}{mm}"
+    );
+    // Under compensation the shifted way counts, and the block stays.
+    let shop = shop("siemens", 300.0);
+    let (code, _, errors) = shop.limit(
+        "G71 G90 G60\n$TC_DP6[1,1]=5\nT1 D1\nG1 G41 X10 Y10 F1000\nG93 X400 F100\nG94 G40 X410 Y30 \
+         F500\nM30\n",
+        "--allow feed",
+    );
+    assert_ne!(code, 0, "{errors}");
+}
+
 /// A block that says itself what F means stays as it is.
 #[test]
 fn the_word_of_the_block_itself() {

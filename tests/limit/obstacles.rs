@@ -191,11 +191,6 @@ fn blocks_that_are_not_touched() {
         "G0 X400 M0 M30\n",
         "it stops, changes the tool or ends the program",
     );
-    untouchable(
-        RIG,
-        "G93 G1 X400 F100\n",
-        "its feed is an inverse time (G93)",
-    );
     untouchable(ISG, "G131 = 90 G1 X400 F30000\n", "it sets limits itself");
     let marlin = Rig {
         controller: "marlin",

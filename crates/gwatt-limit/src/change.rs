@@ -5,7 +5,7 @@ use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_machine::{
     AXES, AxisKind, AxisSet, AxisValues, Knob, KnobArgument, KnobTarget, Machine, PathMode,
 };
-use gwatt_motion::{Corner, Move, MoveKind, Square, hold_to_path, raise_to_path};
+use gwatt_motion::{Corner, FeedMode, Move, MoveKind, Square, hold_to_path, raise_to_path};
 
 /// What may be changed about the block of a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -339,8 +339,12 @@ pub(super) fn feed_word(machine: &Machine, mv: &Move, permit: &Permit, speed_mm_
     round_feed_down(speed_mm_s * SECONDS_PER_MINUTE / feed_unit(machine, mv, permit))
 }
 
-/// Millimetres, or degrees, in the unit of length that F speaks of.
+/// Millimetres, or degrees, in the unit of length that F speaks of: under G93 the way of the
+/// block itself.
 pub(super) fn feed_unit(machine: &Machine, mv: &Move, permit: &Permit) -> f64 {
+    if mv.feed_mode == FeedMode::InverseTime && mv.kind != MoveKind::Rapid {
+        return mv.length_mm;
+    }
     let commanded = mv.moving.0 | mv.unknown_start.0;
     let linear = AxisSet(commanded)
         .iter()
