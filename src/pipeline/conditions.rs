@@ -206,7 +206,7 @@ fn plan_conditions(machine: &Machine, summary: &Summary) -> Vec<String> {
     let stepped = corner.is_some_and(|corner| !matches!(corner, CornerRule::LinuxCnc { .. }));
     if summary.ahead && modelled && corner.is_some() && !stepped {
         conditions.push(format!(
-            "before the first G61 or G64 corners are rounded within {} mm \
+            "corners before a G61 or G64 of the program, if there are any, are rounded within {} mm \
              (power_on_tolerance_mm), as the control starts",
             machine.controller.language.power_on_tolerance_mm
         ));

@@ -85,10 +85,12 @@ pub(super) fn limit_waiting(
     })?;
     let mut lowered = lower_further(machine, first, &mut |target| attempt(target, None, true))?;
     let Some((plan, waiting)) = waiting else {
-        lowered.before.notes.push(match places.len() {
-            0 => no_place(),
-            places => not_enough(places),
-        });
+        let notes = &mut lowered.before.notes;
+        match places.len() {
+            0 => notes.push(no_place()),
+            places if !lowered.certified => notes.push(not_enough(places)),
+            _ => {}
+        }
         return Ok(lowered);
     };
     if lowered.certified && lowered.after.duration_s <= waiting.after.duration_s {

@@ -45,6 +45,11 @@ impl Style {
         format!("{style}{text}{style:#}")
     }
 
+    /// Whether there is room for a line of a program next to so many columns.
+    pub(super) fn has_room(self, taken: usize) -> bool {
+        self.columns.is_none_or(|columns| taken + LEAST < columns)
+    }
+
     /// A line of a program, cut to the room that the rest of its row, `taken` columns, leaves.
     pub(super) fn cut(self, line: &[u8], taken: usize) -> String {
         let Some(columns) = self.columns else {

@@ -116,8 +116,17 @@ fn worst(summary: &Summary, style: Style) -> String {
         cells.max().unwrap_or(0)
     };
     let taken: usize = INDENT.len() + (0..4).map(|cell| width(cell) + 2).sum::<usize>();
+    // What helps stands in the row where there is room for it.
+    let in_rows = alike
+        .iter()
+        .all(|(row, _)| style.has_room(taken + row.after.chars().count() + row.help_chars()));
+    let mut helps = Vec::new();
     let rows = alike.iter().map(|(row, count)| {
         let mut after = row.after.clone();
+        if !row.help.is_empty() && in_rows {
+            let _ = write!(after, "{HELPS}{}", row.help);
+        }
+        helps.push(row.help);
         if *count > 1 {
             let _ = write!(after, "  ({})", moves(*count));
         }
@@ -125,7 +134,16 @@ fn worst(summary: &Summary, style: Style) -> String {
         let [line_number, what, limit, overload] = row.cells.clone();
         [line_number, what, limit, overload, line + &after]
     });
-    let mut text = aligned(&rows.collect::<Vec<_>>(), INDENT);
+    let rows: Vec<_> = rows.collect();
+    let mut text = aligned(&rows, INDENT);
+    if !in_rows {
+        let lines = text.lines().zip(&helps);
+        let lines = lines.map(|(line, help)| match *help {
+            "" => format!("{line}\n"),
+            help => format!("{line}\n{INDENT}{HELPS}{help}\n"),
+        });
+        text = lines.collect();
+    }
     let shown: u64 = summary.worst.iter().map(|unfit| unfit.runs).sum();
     if summary.unfit_count > shown {
         let more = summary.unfit_count - shown;
@@ -134,8 +152,9 @@ fn worst(summary: &Summary, style: Style) -> String {
     text
 }
 
-/// What lists are set in by.
+/// What lists are set in by, and what stands before what helps.
 const INDENT: &str = "  ";
+const HELPS: &str = "  → ";
 
 /// A move of the list of the worst.
 #[derive(PartialEq)]
@@ -145,6 +164,8 @@ struct Shown<'a> {
     text: &'a [u8],
     /// What stands after it.
     after: String,
+    /// What helps; empty where nothing is known.
+    help: &'a str,
 }
 
 impl<'a> Shown<'a> {
@@ -162,9 +183,6 @@ impl<'a> Shown<'a> {
         if !unfit.file.is_empty() {
             let _ = write!(after, "  in {}", unfit.file);
         }
-        if !unfit.help.is_empty() {
-            let _ = write!(after, "  → {}", unfit.help);
-        }
         Self {
             cells: [
                 format!("line {}", unfit.line),
@@ -174,6 +192,15 @@ impl<'a> Shown<'a> {
             ],
             text: unfit.text.trim_ascii(),
             after,
+            help: &unfit.help,
+        }
+    }
+
+    /// Columns that what helps takes in the row.
+    fn help_chars(&self) -> usize {
+        match self.help {
+            "" => 0,
+            help => HELPS.chars().count() + help.chars().count(),
         }
     }
 }

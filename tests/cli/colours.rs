@@ -115,14 +115,14 @@ fn lists_keep_to_the_width_of_the_terminal() {
         changes: None,
         held: None,
     };
-    let listed = |columns: Option<usize>| {
+    let listing = |columns: Option<usize>| {
         let style = Style {
             colour: false,
             columns,
         };
-        let text = check_text(&checked, &machine, style);
-        text.lines().nth(1).unwrap().to_owned()
+        check_text(&checked, &machine, style)
     };
+    let listed = |columns| listing(columns).lines().nth(1).unwrap().to_owned();
     let whole = listed(None);
     assert!(whole.contains("a long remark a long remark") && whole.contains('…'));
     for columns in [90, 100, 130] {
@@ -136,6 +136,13 @@ fn lists_keep_to_the_width_of_the_terminal() {
             ))
         );
     }
-    // Never so little that the line cannot be known again.
-    assert!(listed(Some(20)).contains("G0 X200. Y1…"));
+    // Where it is too narrow for both, what helps gets a line of its own.
+    let text = listing(Some(60));
+    let lines: Vec<&str> = text.lines().skip(1).collect();
+    assert!(
+        lines[0].contains("G0 X200. Y1") && lines[0].ends_with('…'),
+        "{text}"
+    );
+    assert_eq!(lines[0].chars().count(), 60, "{text}");
+    assert!(lines[1].starts_with("    → fits with G1 F"), "{text}");
 }

@@ -275,8 +275,8 @@ fn blocks_that_keep_their_words_keep_them_in_files_too() {
         stays(&shop, &[&["one.nc"], arguments].concat(), code, message);
     };
     let feed = ["--allow", "feed"];
-    let inverse = "O0100\nG93 G1 X0. F60.\nG94\nM99\n";
-    refused(inverse, &feed, 1, "its feed is an inverse time (G93)");
+    let by_turns = "O0100\nM3 S3000\nG95 G1 X0. F10.\nG94\nM99\n";
+    refused(by_turns, &feed, 1, "the feed in force is per revolution");
     refused("O0100\nG33 X0. F30.\nM99\n", &feed, 2, "G33 is thread");
     refused("O0100\nG1 X0. F30000\nM99\n", &[], 1, "without permission");
     refused("O0100\nG0 X0.\n", &[], 2, "without a return");

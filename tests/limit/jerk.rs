@@ -79,7 +79,7 @@ fn where_it_does_nothing_it_is_not_written() {
     }
 }
 
-/// 400 mm in 0.8 s by an inverse time, 1250 W of 1000 W: 80 % of the speed of X.
+/// 500 mm/s by the revolution, 1250 W of 1000 W: 80 % of the speed of X.
 #[test]
 fn the_speed_of_axes_is_lowered_where_f_cannot_be() {
     let rig = Rig {
@@ -91,17 +91,21 @@ fn the_speed_of_axes_is_lowered_where_f_cannot_be() {
         fits(
             &rig,
             Strategy::Speed,
-            "G93 G1 X400 F75\nG94 G1 X401 F100\nM30\n"
+            "M3 S3000\nG95 G1 X400 F10\nG94 G1 X401 F100\nM30\n"
         ),
-        "VELOLIM[X]=80 VELOLIM[Y]=100\nG93 G1 X400 F75\nVELOLIM[X]=100 VELOLIM[Y]=100\n\
-         G94 G1 X401 F100\nM30\n"
+        "M3 S3000\nVELOLIM[X]=80 VELOLIM[Y]=100\nG95 G1 X400 F10\n\
+         VELOLIM[X]=100 VELOLIM[Y]=100\nG94 G1 X401 F100\nM30\n"
     );
     // An arc turns through all directions: no share of an axis stands for its speed.
     let rig = Rig {
         peak_w: 600.0,
         ..rig
     };
-    let (_, summary) = limited(&rig, Strategy::Speed, "G93 G2 X0 Y400 J200 F48\nM30\n");
+    let (_, summary) = limited(
+        &rig,
+        Strategy::Speed,
+        "M3 S3000\nG95 G2 X0 Y400 J200 F10\nM30\n",
+    );
     assert!(!summary.certified);
 }
 

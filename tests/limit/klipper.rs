@@ -53,6 +53,20 @@ fn a_block_too_short_for_its_speed_fits_by_its_acceleration() {
     assert!(refusal.contains(friction), "{refusal}");
 }
 
+/// Without an F a diagonal is bounded by its axes, √2 · 200 mm/s; a word for the largest speed
+/// is never above that of the machine.
+#[test]
+fn no_word_for_the_largest_speed_is_above_that_of_the_machine() {
+    let program = "G0 Z5\nG0 X100 Y100\nG1 X10 F500\n";
+    for peak_w in [1.0, 2.0, 3.0, 3.5, 3.9] {
+        let (text, _) = fits(&machine(peak_w, ""), how(Strategy::Speed, false), program);
+        let word = "SET_VELOCITY_LIMIT VELOCITY=";
+        let mut values = text.lines().filter_map(|line| line.strip_prefix(word));
+        let highest = values.try_fold(0.0_f64, |most, it| Some(most.max(it.parse().ok()?)));
+        assert_eq!(highest, Some(200.0), "{text}");
+    }
+}
+
 /// 10 kg by X and by Y, 200 mm/s and 1000 mm/s²: from rest to 200 mm/s along X takes
 /// 10·1·0.2 = 2 W.
 fn machine(peak_w: f64, rest: &str) -> Machine {

@@ -3,6 +3,7 @@
 
 use super::case::{Case, Ends};
 use super::change::Change;
+use super::depth::Depths;
 use super::lever::{Levers, Obstacle};
 use super::options::Strategy;
 use super::solver::{Solver, share};
@@ -33,7 +34,9 @@ pub(super) fn step_by_step(
         let next = Ends::Alone(depth + 1);
         return solved(Ends::Alone(depth)).or_else(|_| solved(next));
     }
-    solved(Ends::Any(depth - STEPS)).or_else(|obstacle| {
+    // In what is left of the rounds all of its steps.
+    let left = (depth - STEPS).saturating_mul(Depths::DEEPEST) / (Depths::DEEPEST - STEPS);
+    solved(Ends::Any(left)).or_else(|obstacle| {
         if depth > STEPS_MOST {
             return Err(obstacle);
         }
@@ -48,7 +51,9 @@ impl Solver<'_> {
         let planned = case.assessment.ahead && case.assessment.certificate == Certificate::Planned;
         let known = case.mv.unknown_start.is_empty();
         let whole = self.how.strategy != Strategy::Split;
-        whole && planned && known && levers.speed.is_none() && levers.accel.is_some()
+        // Steps of speed do not fall with the acceleration.
+        let ramps = !self.exceeds_by_steps(case, case.mv);
+        whole && ramps && planned && known && levers.speed.is_none() && levers.accel.is_some()
     }
 
     /// The load of a move at one of these steps: from rest, then with the speeds at its ends that

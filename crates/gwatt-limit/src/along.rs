@@ -4,7 +4,7 @@ use super::case::Case;
 use super::change::{Change, round_to_step};
 use super::solver::{RETRIES, Solver};
 use gwatt_machine::{AXES, AxisSet, AxisValues, KnobArgument};
-use gwatt_motion::Move;
+use gwatt_motion::{Move, own_path_speed};
 
 impl Solver<'_> {
     /// The values of a knob for the largest speed, rounded down, for a path speed at the
@@ -46,7 +46,10 @@ impl Solver<'_> {
             (value >= data.min && value > 0.0).then_some(value)
         };
         if data.argument == KnobArgument::Value {
-            return Some([down(speed_mm_s)?; AXES]);
+            // Along a diagonal axes may be bounded to more than the path's own limit, above
+            // which the word would raise theirs.
+            let own_mm_s = own_path_speed(self.machine).unwrap_or(speed_mm_s);
+            return Some([down(speed_mm_s.min(own_mm_s))?; AXES]);
         }
         let mut values = [0.0; AXES];
         for axis in self.machine.axis_set.iter() {
