@@ -1,10 +1,22 @@
 //! Axes of which all is known, and recordings of them.
 
+use std::env;
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use gwatt_identify::{Factor, Kind, Quantity, Recording, Signal, TransferFunction};
 
 pub(crate) const PERIOD_S: f64 = 1e-3;
+
+/// The numbers of cases that `GWATT_CASES` names, as in `20..40`; else from 0 on so many.
+pub(crate) fn wanted(all: u64) -> Range<u64> {
+    let named = env::var("GWATT_CASES").ok();
+    let range = named.as_deref().and_then(|named| {
+        let (from, to) = named.split_once("..")?;
+        Some(from.parse().ok()?..to.parse().ok()?)
+    });
+    range.unwrap_or(0..all)
+}
 
 /// `SplitMix64`, and normal deviates of it (Box & Muller).
 pub(crate) struct Random(pub(crate) u64);
