@@ -312,6 +312,34 @@ fn block() -> impl Strategy<Value = String> {
     ]
 }
 
+/// A rapid that speeds up in the blend after a slower one: at a lower override there is no room
+/// for the blend, and it speeds up with all of its acceleration after the corner.
+#[test]
+fn a_higher_share_after_a_blend_counts_without_it() {
+    let rig = Rig {
+        peak_w: 595.0,
+        ..HAL
+    };
+    let text = rig.fits(
+        "G64\nG0 X93\nM67 E1 Q0.05\nG0 X-31 Y108\nG0 X-116 Y-96\nG0 X184 Y0\nG0 X221\nG0 X0\nM2\n",
+    );
+    for percent in (30..=100).step_by(5) {
+        let share = f64::from(percent) / 100.0;
+        let mut machine = rig.machine();
+        machine.limits.override_at = Some(OverrideAt {
+            feed: share,
+            rapid: share,
+            spindle: 1.0,
+        });
+        let read = analyze(Cursor::new(&text), &machine, &Options::default(), None).unwrap();
+        assert!(
+            read.peak_w <= 595.0 * (1.0 + 1e-9),
+            "{share}: {}",
+            read.peak_w
+        );
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 

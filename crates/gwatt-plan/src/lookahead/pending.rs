@@ -10,6 +10,7 @@ use super::super::axis_limits::lower;
 use super::blend::{Circle, Leg, Side, angle_between};
 use super::element::{Element, Joint};
 use super::pieces::Piece;
+use super::ramp::Slack;
 use super::vector::{Vector, add, cross, dot, scale, sub, unit};
 use gwatt_machine::AXES;
 
@@ -36,6 +37,9 @@ pub(super) struct Pending<T> {
     /// It may be entered faster than it runs, the change of pace comes late, and it is too
     /// short to come down to its own.
     pub lags: bool,
+    /// At some lower override it may keep all of its acceleration at a joint in which it
+    /// overlaps here.
+    pub keeps_all: bool,
     /// See [`Planned::late_mm_s`](super::Planned::late_mm_s).
     pub late_mm_s: f64,
     /// Share of the acceleration given up to the kinks before and after.
@@ -67,6 +71,7 @@ impl<T: Copy> Pending<T> {
             expected_mm_s: element.feed_mm_s,
             pace_before: element.pace,
             lags: false,
+            keeps_all: false,
             late_mm_s: 0.0,
             kink_before: 0.0,
             kink_behind: 0.0,
@@ -89,6 +94,7 @@ impl<T: Copy> Pending<T> {
             element.feed_mm_s / element.pace * feed_ratio
         };
         (self.pace_before, self.lags, self.late_mm_s) = (element.pace, false, 0.0);
+        self.keeps_all = false;
         self.from_mm = 0.0;
         self.length_mm = element.length_mm;
         self.sweep_rad = element.curve.map_or(0.0, |curve| curve.sweep_rad.abs());
@@ -108,6 +114,18 @@ impl<T: Copy> Pending<T> {
     /// The speed that it runs at.
     pub fn run_speed(&self) -> f64 {
         self.element.feed_mm_s.min(self.max_speed)
+    }
+
+    /// How far lower overrides may go beyond its plan.
+    pub fn slack(&self) -> Slack {
+        if !self.keeps_all {
+            return Slack::default();
+        }
+        Slack {
+            accel_mm_s2: self.accel(),
+            chord2: f64::INFINITY,
+            ..Slack::default()
+        }
     }
 
     /// The same while the pace of the element before it is still in force.

@@ -80,7 +80,8 @@ pub struct Planned<T> {
     /// True where it or the piece after it may do so: next to a parabolic blend.
     pub overlaps: bool,
     /// The speed up to which it may still speed up and from which it may brake, mm/s, since
-    /// a lower pace comes late, at this setting or a lower one; 0 where none does.
+    /// a lower pace comes late, at this setting or a lower one, or a higher one after a blend
+    /// that a lower override has no room for; 0 where none does.
     pub late_mm_s: f64,
     /// How far lower overrides may go beyond that.
     pub slack: Slack,

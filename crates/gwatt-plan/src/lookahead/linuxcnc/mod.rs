@@ -124,7 +124,7 @@ impl<T: Copy> LinuxCnc<T> {
         };
         let way = self.way(&mut before, &mut next);
         if before.element.pace != next.element.pace {
-            self.change_pace(&before, &mut next, &way);
+            self.change_pace(&mut before, &mut next, &way);
         }
         match way {
             Way::Stop => {
@@ -156,7 +156,7 @@ impl<T: Copy> LinuxCnc<T> {
     /// at the pace before. A lower one comes into force after some cycles, in which the
     /// motion may still speed up; at lower overrides, where the joint may be passed as fast,
     /// it brakes then.
-    fn change_pace(&self, before: &Pending<T>, next: &mut Pending<T>, way: &Way) {
+    fn change_pace(&self, before: &mut Pending<T>, next: &mut Pending<T>, way: &Way) {
         let joint_mm_s = match way {
             // Rapids may be rounded there at a lower override.
             Way::Parabolic if before.element.rapid && next.element.rapid => before.run_speed(),
@@ -165,10 +165,17 @@ impl<T: Copy> LinuxCnc<T> {
             Way::Blend(fit) => fit.speed,
         };
         let overlaps = matches!(way, Way::Parabolic);
+        // The slower one may be too slow for that at a lower override, where the other one still
+        // is fast: both keep all of their acceleration then.
+        (before.keeps_all, next.keeps_all) = (before.keeps_all || overlaps, overlaps);
         if !overlaps {
             next.pace_before = before.element.pace;
         }
         if before.element.pace <= next.element.pace {
+            // At a lower override there may be no room for the blend in which it speeds up here.
+            if matches!(way, Way::Blend(_)) {
+                next.late_mm_s = next.run_speed();
+            }
             return;
         }
         let accel = next.accel();
@@ -418,7 +425,7 @@ impl<T: Copy> LinuxCnc<T> {
             overlap_s: of.overlap_s(last),
             overlaps: of.overlaps(),
             late_mm_s: of.late_mm_s,
-            slack: Slack::default(),
+            slack: of.slack(),
         };
         let mut node = Node::new(of.length_mm, top2, accel, entry2, load);
         let seen = of.seen_speed().min(max_speed);
