@@ -305,26 +305,6 @@ impl Equations {
         thin(column.to_vec(), step, edge)
     }
 
-    /// Those of a recording with this speed, where it has none of its own: within the
-    /// band alone.
-    ///
-    /// # Errors
-    ///
-    /// As of [`Self::of`].
-    pub(super) fn with_speed(
-        recording: &Recording,
-        speed: &[f64],
-        bandwidth_hz: f64,
-    ) -> Outcome<Self> {
-        let mut raw = raw(recording, bandwidth_hz)?;
-        let t = recording.period_s;
-        if raw.velocity.is_none() {
-            let smooth_hz = (SMOOTH * bandwidth_hz).min(0.4 / t);
-            raw.velocity = Some(low_pass(speed, smooth_hz, t));
-        }
-        Ok(Self::within(raw, bandwidth_hz))
-    }
-
     fn within(raw: Raw, bandwidth_hz: f64) -> Self {
         let t = raw.period_s;
         let (step, _) = thinning(raw.force.len(), bandwidth_hz, t);

@@ -418,7 +418,8 @@ pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Ou
         (Term::Viscous, value(model.viscous)),
         (Term::Coulomb, value(model.coulomb)),
     ];
-    if let Some(rubbing) = Rubbing::known(other, figures) {
+    let mass = 1.0 / model.transfer.gain;
+    if let Some(rubbing) = Rubbing::known(other, mass, figures) {
         rubbing.take_off(&mut prepared.input);
     }
     let data = Data {

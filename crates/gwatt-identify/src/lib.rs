@@ -79,6 +79,8 @@ mod rubbing;
 mod sampling;
 mod sandwich;
 mod search;
+mod slow_motion;
+mod speeds;
 mod chosen;
 mod sensitivity;
 mod spectrum;

@@ -8,22 +8,10 @@
 //! and the axis as good as rigid.
 
 use super::certainty;
-use super::column::Quantity;
-use super::equations::Equations;
 use super::figure::Figure;
-use super::filter::{derivative, low_pass};
-use super::friction::{Solved, Terms, moves_one_way, solve};
 use super::recording::Recording;
-
-/// Band in which friction is looked for, Hz.
-const SLOW_HZ: f64 = 5.0;
-/// Speeds are smoothed up to this share of the sampling rate.
-const SMOOTH: f64 = 0.1;
-
-/// Friction of a speed that is a sum of accelerations, as a share: what instants of sticking
-/// made of it in simulations.
-const SUMMED_VISCOUS: f64 = 0.04;
-const SUMMED_COULOMB: f64 = 0.12;
+use super::slow_motion::{SlowMotion, slow_motion};
+use super::speeds::{Followed, Speed, are_sums, between, mean_sign, mean_speed, speed_of};
 
 /// A term of friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,76 +33,8 @@ pub(super) struct Rubbing {
     pub(super) inputs: Vec<Vec<f64>>,
     /// By term: about how much it is; that is taken off the force beforehand.
     pub(super) about: Vec<f64>,
-}
-
-/// The speed at each sample.
-struct Speed {
-    /// What viscous friction goes with: what noise adds is little next to what it adds to the
-    /// acceleration.
-    plain: Vec<f64>,
-    /// What Coulomb friction goes with: noise would turn its sign.
-    smooth: Vec<f64>,
-}
-
-impl Speed {
-    fn alone(plain: Vec<f64>) -> Self {
-        Self {
-            smooth: plain.clone(),
-            plain,
-        }
-    }
-}
-
-/// The speed. Of an acceleration there are two: as it is summed up from rest, and so that the
-/// axis ends as it began, which takes off what a sensor adds.
-fn speeds(recording: &Recording) -> Vec<Speed> {
-    let t = recording.period_s;
-    let values = |quantity| recording.get(quantity).map(|signal| &signal.values);
-    let smooth = |x: &[f64]| low_pass(x, SMOOTH / t, t);
-    if let Some(velocity) = values(Quantity::Velocity) {
-        return vec![Speed {
-            smooth: smooth(velocity),
-            plain: velocity.clone(),
-        }];
-    }
-    if let Some(position) = values(Quantity::Position) {
-        return vec![Speed::alone(derivative(&smooth(position), t))];
-    }
-    let Some(acceleration) = values(Quantity::Acceleration) else {
-        return Vec::new();
-    };
-    let mean = acceleration.iter().sum::<f64>() / acceleration.len().max(1) as f64;
-    [0.0, mean]
-        .into_iter()
-        .map(|bias| {
-            let mut sum = 0.0;
-            let steps = acceleration.windows(2).map(|pair| {
-                sum += t * (0.5 * pair.iter().sum::<f64>() - bias);
-                sum
-            });
-            Speed::alone(std::iter::once(0.0).chain(steps).collect())
-        })
-        .collect()
-}
-
-/// Whether speeds are sums of accelerations.
-fn are_sums(recording: &Recording) -> bool {
-    let has = |quantity| recording.get(quantity).is_some();
-    !has(Quantity::Velocity) && !has(Quantity::Position)
-}
-
-/// Means from each sample to the next one: a force is held as long, and its friction
-/// changes meanwhile.
-fn between(x: &[f64], mean: impl Fn(f64, f64) -> f64) -> Vec<f64> {
-    let last = x.last().copied();
-    let next = x.iter().skip(1).copied().chain(last);
-    x.iter().zip(next).map(|(a, b)| mean(*a, b)).collect()
-}
-
-/// The mean sign of a speed that runs straight from one value to another.
-fn mean_sign(a: f64, b: f64) -> f64 {
-    let size = a.abs() + b.abs();
-    if size > 0.0 { (a + b) / size } else { 0.0 }
+    /// What slow motion shows, of which that is.
+    slow: Option<SlowMotion>,
 }
 
 /// How sure a figure is, in standard errors; below 0 where it is negative.
@@ -126,36 +46,27 @@ impl Rubbing {
     /// What a recording shows of friction. `None` where it shows none, or has no force
     /// or motion.
     pub(super) fn of(recording: &Recording) -> Option<Self> {
-        let tried = speeds(recording).into_iter().filter_map(|speed| {
-            let solved = slow(recording, &speed.smooth)?;
-            let left: f64 = solved.residuals.iter().flatten().map(|x| x * x).sum();
-            Some((left, solved, speed))
-        });
-        let (_, solved, speed) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let figure = |index: usize| {
-            let value = solved.theta.get(index).copied().unwrap_or_default();
-            let std = solved.covariance[(index, index)].sqrt();
-            (value, sureness(value, std))
-        };
-        let mut found = vec![(Term::Viscous, figure(1))];
-        if solved.terms == Terms::Symmetric {
-            found.push((Term::Coulomb, figure(2)));
-        }
-        if found
-            .iter()
-            .all(|(_, (_, sure))| *sure < certainty::FRICTION)
-        {
+        let (slow, speed) = slow_motion(recording)?;
+        let sureness = |figure: Figure| sureness(figure.value, figure.std);
+        let surest = slow.coulomb.map_or(f64::MIN, sureness);
+        if sureness(slow.viscous).max(surest) < certainty::FRICTION {
             return None;
         }
+        let is_sure = |figure: Figure| sureness(figure) > certainty::FRICTION_TERM;
         let mut out = Self::default();
-        for (term, (value, sure)) in found {
-            if sure > certainty::FRICTION_TERM {
-                out.add(term, &speed, value);
-            }
+        let is_dry = slow.coulomb.is_some_and(is_sure);
+        if is_sure(slow.viscous) || is_dry {
+            // Next to Coulomb friction it also takes what the sign of the speed is off by: without
+            // it that goes into the inertia.
+            out.add(Term::Viscous, &speed, slow.viscous.value);
+        }
+        if let Some(coulomb) = slow.coulomb.filter(|_| is_dry) {
+            out.add(Term::Coulomb, &speed, coulomb.value);
         }
         if are_sums(recording) {
             out.add(Term::Drift, &speed, 0.0);
         }
+        out.slow = Some(slow);
         Some(out)
     }
 
@@ -179,24 +90,30 @@ impl Rubbing {
         self.terms.contains(&Term::Drift)
     }
 
-    /// Viscous and Coulomb friction: what was taken off beforehand, and what was found of
-    /// each term besides.
+    /// Viscous and Coulomb friction. Next to Coulomb friction both are what slow motion
+    /// shows: at which mass it acts changes fast motion, and a model knows that of the
+    /// force alone. Viscous friction alone is what was taken off beforehand, and what the
+    /// model found besides: wherever it acts, poles and zeros have a place for it.
     pub(super) fn figures(&self, found: &[Figure]) -> [Option<Figure>; 2] {
-        let of = |wanted: Term, summed: f64| {
-            let at = self.terms.iter().position(|term| *term == wanted)?;
-            let found = found.get(at)?;
-            let value = self.about.get(at)? + found.value;
-            // A sum misses what stops the axis between samples.
-            let share = if self.is_summed() { summed } else { 0.0 };
-            Some(Figure {
-                value,
-                std: libm::hypot(found.std, share * value),
-            })
+        let Some(slow) = &self.slow else {
+            return [None; 2];
         };
-        [
-            of(Term::Viscous, SUMMED_VISCOUS),
-            of(Term::Coulomb, SUMMED_COULOMB),
-        ]
+        let place = |wanted: Term| self.terms.iter().position(|term| *term == wanted);
+        if place(Term::Coulomb).is_some() {
+            let viscous = slow.viscous;
+            let is_sure = sureness(viscous.value, viscous.std) > certainty::FRICTION_TERM;
+            return [is_sure.then_some(viscous), slow.coulomb];
+        }
+        let viscous = place(Term::Viscous).and_then(|at| {
+            let (about, found) = (self.about.get(at)?, found.get(at)?);
+            // Coulomb friction that does not show may be there.
+            let unseen = slow.coulomb.map_or(0.0, |coulomb| coulomb.std);
+            Some(Figure {
+                value: about + found.value,
+                std: libm::hypot(found.std, slow.exchanged * unseen),
+            })
+        });
+        [viscous, None]
     }
 
     /// Whether there is friction for sure.
@@ -206,9 +123,19 @@ impl Rubbing {
         figures.any(|figure| figure.value > certainty::FRICTION_OF_MODEL * figure.std)
     }
 
-    /// This much friction in another recording.
-    pub(super) fn known(recording: &Recording, figures: [(Term, Option<f64>); 2]) -> Option<Self> {
-        let speed = speeds(recording).pop()?;
+    /// This much friction in another recording of an axis of this mass.
+    pub(super) fn known(
+        recording: &Recording,
+        mass: f64,
+        figures: [(Term, Option<f64>); 2],
+    ) -> Option<Self> {
+        let [viscous, coulomb] = figures.map(|(_, value)| value.unwrap_or_default());
+        let by = Followed {
+            mass,
+            viscous,
+            coulomb,
+        };
+        let speed = speed_of(recording, by)?;
         let mut out = Self::default();
         for (term, value) in figures {
             if let Some(value) = value {
@@ -219,26 +146,10 @@ impl Rubbing {
     }
 }
 
-/// Mass and friction where motion is slow.
-fn slow(recording: &Recording, speed: &[f64]) -> Option<Solved> {
-    let band_hz = SLOW_HZ.min(SMOOTH / recording.period_s);
-    let equations = Equations::with_speed(recording, speed, band_hz).ok()?;
-    let mut all = [equations];
-    // One way Coulomb friction is as good as an offset. Sums of accelerations do not show
-    // which way.
-    let is_one_way = !are_sums(recording) && moves_one_way(&mut all);
-    let terms = if is_one_way {
-        Terms::OneWay
-    } else {
-        Terms::Symmetric
-    };
-    solve(&all, terms)
-}
-
 impl Term {
     fn input(self, speed: &Speed) -> Vec<f64> {
         match self {
-            Self::Viscous => between(&speed.plain, |a, b| 0.5 * (a + b)),
+            Self::Viscous => between(&speed.plain, mean_speed),
             Self::Coulomb => between(&speed.smooth, mean_sign),
             Self::Drift => {
                 let samples = speed.plain.len();
@@ -246,21 +157,5 @@ impl Term {
                 (0..samples).map(|k| k as f64 / n).collect()
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_sign_is_the_mean_over_a_sample() {
-        assert_eq!(mean_sign(2.0, 3.0), 1.0);
-        assert_eq!(mean_sign(-1.0, 3.0), 0.5);
-        assert_eq!(mean_sign(0.0, 0.0), 0.0);
-        assert_eq!(
-            between(&[1.0, 3.0, 5.0], |a, b| 0.5 * (a + b)),
-            [2.0, 4.0, 5.0]
-        );
     }
 }

@@ -3,6 +3,7 @@
 mod coverage;
 mod effects;
 mod presets;
+mod rubbing;
 mod simulated;
 mod sticking;
 mod sweep;

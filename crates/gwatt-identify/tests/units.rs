@@ -12,7 +12,7 @@ const FINE: usize = 20;
 
 /// Motor, table and a mass on the table with an anti-resonance at 40 Hz, 0.024 kg·m² in
 /// all; friction acts on the table. Speed and acceleration of the table at each sample.
-fn axis(torque: &[f64], viscous: f64, coulomb: f64) -> [Vec<f64>; 2] {
+pub(crate) fn axis(torque: &[f64], viscous: f64, coulomb: f64) -> [Vec<f64>; 2] {
     let spring = |mass: f64, hz: f64, damping: f64| {
         let w = TAU * hz;
         [mass * w * w, 2.0 * damping * mass * w]
@@ -46,7 +46,7 @@ fn axis(torque: &[f64], viscous: f64, coulomb: f64) -> [Vec<f64>; 2] {
     [speed, accel]
 }
 
-fn torque(samples: usize, random: &mut Random) -> Vec<f64> {
+pub(crate) fn torque(samples: usize, random: &mut Random) -> Vec<f64> {
     let (mut slow, share) = (0.0, 0.25);
     (0..samples)
         .map(|_| {
@@ -128,7 +128,7 @@ fn assert_scales(recording: &Recording, method: Method, random: &mut Random) {
     }
 }
 
-fn noisy(x: &[f64], share: f64, random: &mut Random) -> Vec<f64> {
+pub(crate) fn noisy(x: &[f64], share: f64, random: &mut Random) -> Vec<f64> {
     let rms = (x.iter().map(|x| x * x).sum::<f64>() / x.len() as f64).sqrt();
     x.iter()
         .map(|x| x + share * rms * random.normal())
