@@ -21,7 +21,8 @@ const SLOW_HZ: f64 = 5.0;
 const SLOW_SHARE: f64 = 0.1;
 /// Below this share of the largest speed an axis counts as standing.
 const STANDING: f64 = 0.005;
-/// Motion is one way where the other has a smaller share of the samples.
+/// Motion is one way where the other has fewer rows, or a smaller share.
+const OTHER_WAY: usize = 5;
 const OTHER_WAY_SHARE: f64 = 0.02;
 /// A band has so many independent values for each row: 2 a period of its end, of 2.5.
 const INDEPENDENT: f64 = 0.8;
@@ -191,15 +192,13 @@ impl Slow {
     /// them.
     fn solved(&self, speed: &Speed, is_summed: bool) -> Option<SlowMotion> {
         let t = self.period_s;
-        // Sums of accelerations do not show which way.
-        let is_one_way = !is_summed && is_one_way(&speed.smooth);
         let slow = in_band(&between(&speed.plain, mean_speed), t);
-        let signs = (!is_one_way).then(|| in_band(&between(&speed.smooth, mean_sign), t));
+        let signs = in_band(&between(&speed.smooth, mean_sign), t);
         let fastest = slow.iter().fold(0.0_f64, |most, v| v.abs().max(most));
         let band_hz = SLOW_HZ.min(SLOW_SHARE / t);
         let step = ((0.4 / (band_hz * t)) as usize).max(1);
         let edge = ((1.0 / (band_hz * t)) as usize).min(slow.len() / 10);
-        let rows: Vec<(Vec<f64>, f64)> = (edge..slow.len().saturating_sub(edge))
+        let mut rows: Vec<(Vec<f64>, f64)> = (edge..slow.len().saturating_sub(edge))
             .step_by(step)
             .filter_map(|k| {
                 let v = *slow.get(k)?;
@@ -207,26 +206,35 @@ impl Slow {
                 if v.abs() <= STANDING * fastest {
                     return None;
                 }
-                let mut row = vec![*self.acceleration.get(k)?, v, *self.jerk.get(k)?, 1.0];
-                if let Some(signs) = &signs {
-                    row.push(*signs.get(k)?);
-                }
+                let (acceleration, jerk) = (*self.acceleration.get(k)?, *self.jerk.get(k)?);
+                let row = vec![acceleration, v, jerk, 1.0, *signs.get(k)?];
                 Some((row, *self.force.get(k)?))
             })
             .collect();
+        // Sums of accelerations do not show which way. One way Coulomb friction is as good
+        // as an offset.
+        if let Some(way) = one_way(&rows).filter(|_| !is_summed) {
+            rows.retain(|(row, _)| way * speed_of_row(row) > 0.0);
+            for (row, _) in &mut rows {
+                row.truncate(COULOMB);
+            }
+        }
         solved(&rows)
     }
 }
 
-/// Whether nearly all of a motion is one way.
-fn is_one_way(speed: &[f64]) -> bool {
-    let fastest = speed.iter().fold(0.0_f64, |most, v| v.abs().max(most));
-    let count = |sign: f64| {
-        let moving = speed.iter().filter(|v| sign * **v > STANDING * fastest);
-        moving.count() as f64
-    };
-    let (forward, backward) = (count(1.0), count(-1.0));
-    forward.min(backward) < OTHER_WAY_SHARE * forward.max(backward)
+/// The way that slow motion goes, 1 or −1, where nearly all of it is one way.
+fn one_way(rows: &[(Vec<f64>, f64)]) -> Option<f64> {
+    let forward = rows.iter().filter(|(row, _)| speed_of_row(row) > 0.0);
+    let forward = forward.count();
+    let backward = rows.len() - forward;
+    let (less, more) = (forward.min(backward), forward.max(backward));
+    let is_one_way = less < OTHER_WAY || (less as f64) < OTHER_WAY_SHARE * more as f64;
+    is_one_way.then_some(if forward > backward { 1.0 } else { -1.0 })
+}
+
+fn speed_of_row(row: &[f64]) -> f64 {
+    row.get(VISCOUS).copied().unwrap_or_default()
 }
 
 fn solved(rows: &[(Vec<f64>, f64)]) -> Option<SlowMotion> {
