@@ -90,9 +90,10 @@ fn viscous_friction_and_inertia_are_told_apart() {
     }
 }
 
-/// Coulomb friction is a term too; the speed of an acceleration drifts, and the error says so.
+/// With a recorded speed Coulomb friction is a term too; summed up from an acceleration
+/// its sign is not known where motion is slow, and the verdict says so.
 #[test]
-fn coulomb_friction_is_a_term() {
+fn coulomb_friction_is_a_term_where_the_speed_is_recorded() {
     let [speed, accel] = axis(&torque(), 0.048, 0.3);
     let by_speed = found("velocity_rad_s", &noisy(&speed, 0.01, 3));
     let inertia = by_speed.inertia.unwrap();
@@ -119,12 +120,10 @@ fn coulomb_friction_is_a_term() {
     let left = by_speed.rel_error;
     assert!(error < 1.2 * left, "{error} {left}");
     let by_accel = found("accel_rad_s2", &noisy(&accel, 0.05, 5));
+    assert_ne!(judgement::flexible(&by_accel), Judgement::Good);
     let coulomb = by_accel.coulomb.unwrap();
-    assert!(
-        (coulomb.value - 0.3).abs() < 3.0 * coulomb.std,
-        "{coulomb:?}"
-    );
-    assert!(coulomb.std > 0.03, "{coulomb:?}");
+    let apart = (coulomb.value - 0.3).abs();
+    assert!(apart < 3.0 * coulomb.std, "{coulomb:?}");
 }
 
 /// Where there is none, the model has none.

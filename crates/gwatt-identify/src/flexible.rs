@@ -193,7 +193,7 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
     };
     let data = Data {
         input: &prepared.input,
-        friction: &rubbing.inputs,
+        friction: rubbing.free(),
         output: &prepared.output,
         undisturbed: undisturbed.as_deref(),
         period_s: prepared.period_s,
@@ -222,7 +222,8 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
     (described.viscous, described.coulomb) = (viscous, coulomb);
     // A force is held while the friction changes: which speed of a sample it had is open.
     if let (Some(inertia), Some(viscous)) = (&mut described.inertia, described.viscous) {
-        inertia.std = libm::hypot(inertia.std, viscous.value * prepared.period_s);
+        let off = viscous.value * prepared.period_s;
+        inertia.std = libm::hypot(libm::hypot(inertia.std, off), rubbing.inertia_off());
     }
     Ok(described)
 }

@@ -30,7 +30,7 @@ pub(super) struct Rubbing {
     /// What there is.
     pub(super) terms: Vec<Term>,
     /// By term: speeds (m/s or rad/s) or their signs, as means from sample to sample.
-    pub(super) inputs: Vec<Vec<f64>>,
+    inputs: Vec<Vec<f64>>,
     /// By term: about how much it is; that is taken off the force beforehand.
     pub(super) about: Vec<f64>,
     /// What slow motion shows, of which that is.
@@ -85,21 +85,39 @@ impl Rubbing {
         }
     }
 
+    /// What a model gets as inputs of its own, to find what was not taken off. None in motion
+    /// one way: there the noise of the speed is large next to its changes, it is that of the
+    /// motion too, and a model that has the one for an input makes the other of it.
+    pub(super) fn free(&self) -> &[Vec<f64>] {
+        if self.is_one_way() { &[] } else { &self.inputs }
+    }
+
+    /// Motion one way shows no Coulomb friction.
+    fn is_one_way(&self) -> bool {
+        self.slow.as_ref().is_some_and(|it| it.coulomb.is_none())
+    }
+
+    /// By how much the inertia is off where friction is that a model does not find itself.
+    pub(super) fn inertia_off(&self) -> f64 {
+        let slow = self.slow.as_ref().filter(|_| self.is_one_way());
+        slow.map_or(0.0, |slow| slow.mass_exchanged)
+    }
+
     /// Whether the speed is a sum of accelerations.
     pub(super) fn is_summed(&self) -> bool {
         self.terms.contains(&Term::Drift)
     }
 
-    /// Viscous and Coulomb friction. Next to Coulomb friction both are what slow motion
-    /// shows: at which mass it acts changes fast motion, and a model knows that of the
-    /// force alone. Viscous friction alone is what was taken off beforehand, and what the
+    /// Viscous and Coulomb friction. Next to Coulomb friction, and in motion one way, they are
+    /// what slow motion shows: at which mass friction acts changes fast motion, and a model
+    /// knows that of the force alone. To and fro viscous friction alone is what was taken off beforehand, and what the
     /// model found besides: wherever it acts, poles and zeros have a place for it.
     pub(super) fn figures(&self, found: &[Figure]) -> [Option<Figure>; 2] {
         let Some(slow) = &self.slow else {
             return [None; 2];
         };
         let place = |wanted: Term| self.terms.iter().position(|term| *term == wanted);
-        if place(Term::Coulomb).is_some() {
+        if place(Term::Coulomb).is_some() || self.is_one_way() {
             let viscous = slow.viscous;
             let is_sure = sureness(viscous.value, viscous.std) > certainty::FRICTION_TERM;
             return [is_sure.then_some(viscous), slow.coulomb];

@@ -59,6 +59,8 @@ pub(super) struct SlowMotion {
     /// By how much viscous friction is off where Coulomb friction is, by its standard error:
     /// each takes the other's place.
     pub(super) exchanged: f64,
+    /// By how much the mass is off where viscous friction is by its standard error.
+    pub(super) mass_exchanged: f64,
     /// Sum of squares of what is left of the force.
     left: f64,
 }
@@ -267,11 +269,13 @@ fn solved(rows: &[(Vec<f64>, f64)]) -> Option<SlowMotion> {
     let exchanged = coulomb.map_or(0.0, |coulomb| {
         covariance[(VISCOUS, COULOMB)].abs() / (coulomb.std * coulomb.std).max(f64::MIN_POSITIVE)
     });
+    let viscous = figure(VISCOUS)?;
     Some(SlowMotion {
         mass: figure(MASS)?.value,
-        viscous: figure(VISCOUS)?,
+        viscous,
         coulomb,
         exchanged,
+        mass_exchanged: covariance[(MASS, VISCOUS)].abs() / viscous.std.max(f64::MIN_POSITIVE),
         left,
     })
 }

@@ -2,10 +2,11 @@
 
 use std::thread;
 
+use gwatt_identify::excitation::{Shape, make};
 use gwatt_identify::flexible::{self, Choice, Flexible, Method};
 use gwatt_identify::{Figure, Given, Judgement, Quantity, judgement};
 
-use super::simulated::{Random, recording, wanted};
+use super::simulated::{PERIOD_S, Random, recording, wanted};
 use super::units::{axis, noisy, torque};
 
 /// What is found of an axis with viscous and Coulomb friction, and what it has.
@@ -29,15 +30,65 @@ fn case(seed: u64) -> Case {
     };
     let noise = [0.0, 0.01, 0.03][(seed / 2 % 3) as usize];
     let motion = noisy(&motion, noise, &mut random);
+    Case {
+        found: identified(torque, motion, quantity),
+        viscous,
+        coulomb,
+    }
+}
+
+fn identified(torque: Vec<f64>, motion: Vec<f64>, quantity: Quantity) -> Flexible {
     let choice = Choice {
         method: Method::Iv,
         given: Given::default(),
         from_command: false,
     };
-    Case {
-        found: flexible::identify(&recording(torque, motion, quantity), &choice).unwrap(),
-        viscous,
-        coulomb,
+    flexible::identify(&recording(torque, motion, quantity), &choice).unwrap()
+}
+
+/// An axis of 0.05 N·m·s/rad and 0.1 N·m that moves one way under this torque and more, which
+/// is all from 1 to 45 Hz or slow for the most part: noise is a share of a speed that is
+/// large next to its changes.
+fn one_way(mean: f64, is_flat: bool, noise: f64, seed: u64) -> Flexible {
+    let mut random = Random(seed);
+    let more = if is_flat {
+        let shape = Shape::Random {
+            from_hz: 1.0,
+            to_hz: 45.0,
+            seconds: 6000.0 * PERIOD_S,
+            seed,
+        };
+        make(shape, 1.0, PERIOD_S).unwrap().values
+    } else {
+        torque(6000, &mut random).iter().map(|u| 0.1 * u).collect()
+    };
+    let torque: Vec<f64> = more.iter().map(|u| mean + u).collect();
+    let [speed, _] = axis(&torque, 0.05, 0.1);
+    let speed = noisy(&speed, noise, &mut random);
+    // Without the run-up.
+    let cut = |x: &[f64]| x.get(2000..).unwrap().to_vec();
+    identified(cut(&torque), cut(&speed), Quantity::Velocity)
+}
+
+/// The noise of the speed is that of the motion: as an input of the model it came out as
+/// viscous friction of up to 100 times the true one, with small errors.
+#[test]
+fn friction_of_motion_one_way_is_right_next_to_the_noise_of_its_speed() {
+    for (mean, is_flat, noise, seed) in [
+        (0.6, true, 0.002, 1),
+        (0.6, false, 0.002, 2),
+        (1.2, true, 0.002, 2),
+        (1.2, false, 0.0002, 3),
+        (-2.5, false, 0.002, 4),
+        (-2.5, true, 0.0002, 5),
+    ] {
+        let found = one_way(mean, is_flat, noise, seed);
+        let what = format!("{mean} {is_flat} {noise} {seed}");
+        assert_eq!(found.coulomb, None, "{what}");
+        let viscous = found.viscous.expect(&what);
+        assert!(apart(Some(viscous), 0.05) < 3.0, "{what} {viscous:?}");
+        assert!(viscous.std < 0.25 * 0.05, "{what} {viscous:?}");
+        assert!(apart(found.inertia, 0.024) < 3.0, "{what} {found:?}");
     }
 }
 
