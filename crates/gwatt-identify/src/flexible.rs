@@ -193,7 +193,7 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
     };
     let data = Data {
         input: &prepared.input,
-        friction: rubbing.free(),
+        friction: &rubbing.inputs,
         output: &prepared.output,
         undisturbed: undisturbed.as_deref(),
         period_s: prepared.period_s,
@@ -222,8 +222,7 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
     (described.viscous, described.coulomb) = (viscous, coulomb);
     // A force is held while the friction changes: which speed of a sample it had is open.
     if let (Some(inertia), Some(viscous)) = (&mut described.inertia, described.viscous) {
-        let off = viscous.value * prepared.period_s;
-        inertia.std = libm::hypot(libm::hypot(inertia.std, off), rubbing.inertia_off());
+        inertia.std = libm::hypot(inertia.std, viscous.value * prepared.period_s);
     }
     Ok(described)
 }

@@ -10,7 +10,7 @@
 use super::certainty;
 use super::figure::Figure;
 use super::recording::Recording;
-use super::slow_motion::{SlowMotion, slow_motion};
+use super::slow_motion::{SlowMotion, in_band, slow_motion};
 use super::speeds::{Followed, Speed, are_sums, between, mean_sign, mean_speed, speed_of};
 
 /// A term of friction.
@@ -30,7 +30,9 @@ pub(super) struct Rubbing {
     /// What there is.
     pub(super) terms: Vec<Term>,
     /// By term: speeds (m/s or rad/s) or their signs, as means from sample to sample.
-    inputs: Vec<Vec<f64>>,
+    whole: Vec<Vec<f64>>,
+    /// What a model gets of these, to find what was not taken off.
+    pub(super) inputs: Vec<Vec<f64>>,
     /// By term: about how much it is; that is taken off the force beforehand.
     pub(super) about: Vec<f64>,
     /// What slow motion shows, of which that is.
@@ -67,40 +69,38 @@ impl Rubbing {
             out.add(Term::Drift, &speed, 0.0);
         }
         out.slow = Some(slow);
+        // One way the noise of the speed is large next to its changes. It is that of the motion
+        // too, and a model that has the one as an input makes the other of it.
+        let is_one_way = out.is_one_way();
+        let given = |whole: &Vec<f64>| {
+            if is_one_way {
+                in_band(whole, recording.period_s)
+            } else {
+                whole.clone()
+            }
+        };
+        out.inputs = out.whole.iter().map(given).collect();
         Some(out)
     }
 
     fn add(&mut self, term: Term, speed: &Speed, about: f64) {
         self.terms.push(term);
-        self.inputs.push(term.input(speed));
+        self.whole.push(term.input(speed));
         self.about.push(about);
     }
 
     /// Takes what is known of friction off a force.
     pub(super) fn take_off(&self, force: &mut [f64]) {
-        for (input, about) in self.inputs.iter().zip(&self.about) {
+        for (input, about) in self.whole.iter().zip(&self.about) {
             for (slot, x) in force.iter_mut().zip(input) {
                 *slot -= about * x;
             }
         }
     }
 
-    /// What a model gets as inputs of its own, to find what was not taken off. None in motion
-    /// one way: there the noise of the speed is large next to its changes, it is that of the
-    /// motion too, and a model that has the one for an input makes the other of it.
-    pub(super) fn free(&self) -> &[Vec<f64>] {
-        if self.is_one_way() { &[] } else { &self.inputs }
-    }
-
     /// Motion one way shows no Coulomb friction.
     fn is_one_way(&self) -> bool {
         self.slow.as_ref().is_some_and(|it| it.coulomb.is_none())
-    }
-
-    /// By how much the inertia is off where friction is that a model does not find itself.
-    pub(super) fn inertia_off(&self) -> f64 {
-        let slow = self.slow.as_ref().filter(|_| self.is_one_way());
-        slow.map_or(0.0, |slow| slow.mass_exchanged)
     }
 
     /// Whether the speed is a sum of accelerations.
@@ -110,8 +110,9 @@ impl Rubbing {
 
     /// Viscous and Coulomb friction. Next to Coulomb friction, and in motion one way, they are
     /// what slow motion shows: at which mass friction acts changes fast motion, and a model
-    /// knows that of the force alone. To and fro viscous friction alone is what was taken off beforehand, and what the
-    /// model found besides: wherever it acts, poles and zeros have a place for it.
+    /// knows that of the force alone. To and fro viscous friction alone is what was taken off
+    /// beforehand, and what the model found besides: wherever it acts, poles and zeros have a
+    /// place for it.
     pub(super) fn figures(&self, found: &[Figure]) -> [Option<Figure>; 2] {
         let Some(slow) = &self.slow else {
             return [None; 2];

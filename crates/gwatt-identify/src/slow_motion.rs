@@ -59,8 +59,6 @@ pub(super) struct SlowMotion {
     /// By how much viscous friction is off where Coulomb friction is, by its standard error:
     /// each takes the other's place.
     pub(super) exchanged: f64,
-    /// By how much the mass is off where viscous friction is by its standard error.
-    pub(super) mass_exchanged: f64,
     /// Sum of squares of what is left of the force.
     left: f64,
 }
@@ -175,7 +173,7 @@ struct Slow {
 }
 
 /// What the band leaves of a column.
-fn in_band(x: &[f64], t: f64) -> Vec<f64> {
+pub(super) fn in_band(x: &[f64], t: f64) -> Vec<f64> {
     low_pass(x, SLOW_HZ.min(SLOW_SHARE / t), t)
 }
 
@@ -269,13 +267,11 @@ fn solved(rows: &[(Vec<f64>, f64)]) -> Option<SlowMotion> {
     let exchanged = coulomb.map_or(0.0, |coulomb| {
         covariance[(VISCOUS, COULOMB)].abs() / (coulomb.std * coulomb.std).max(f64::MIN_POSITIVE)
     });
-    let viscous = figure(VISCOUS)?;
     Some(SlowMotion {
         mass: figure(MASS)?.value,
-        viscous,
+        viscous: figure(VISCOUS)?,
         coulomb,
         exchanged,
-        mass_exchanged: covariance[(MASS, VISCOUS)].abs() / viscous.std.max(f64::MIN_POSITIVE),
         left,
     })
 }
