@@ -2,7 +2,7 @@
 
 use super::{RIG, Rig, Run, run};
 use gwatt::machine::{Machine, OverrideAt};
-use gwatt::pipeline::{Options, analyze};
+use gwatt::pipeline::{Options, Summary, analyze};
 use proptest::prelude::*;
 use std::fmt::Write as _;
 use std::io::Cursor;
@@ -320,24 +320,49 @@ fn a_higher_share_after_a_blend_counts_without_it() {
         peak_w: 595.0,
         ..HAL
     };
-    let text = rig.fits(
-        "G64\nG0 X93\nM67 E1 Q0.05\nG0 X-31 Y108\nG0 X-116 Y-96\nG0 X184 Y0\nG0 X221\nG0 X0\nM2\n",
-    );
+    let program =
+        "G64\nG0 X93\nM67 E1 Q0.05\nG0 X-31 Y108\nG0 X-116 Y-96\nG0 X184 Y0\nG0 X221\nG0 X0\nM2\n";
+    assert_fits_at_lower_overrides(rig, program);
+}
+
+/// A short rapid with a lower share after a blend: at 100 % it keeps up with the blend, at 95 %
+/// it is entered faster than it runs, and too short to come down.
+#[test]
+fn a_lower_share_after_a_blend_counts_where_it_no_longer_keeps_up() {
+    let program = "G64\nG1 X0 Y-237 F1000\nM52 P1\nG0 X347\nM67 E1 Q0.727\nG0 X371 Y-255\nM67 E1 Q1\n\
+                   G1 X0 Y0 F1000\nM2\n";
+    let (_, peak_w) = figures(HAL, program);
     for percent in (30..=100).step_by(5) {
         let share = f64::from(percent) / 100.0;
-        let mut machine = rig.machine();
-        machine.limits.override_at = Some(OverrideAt {
-            feed: share,
-            rapid: share,
-            spindle: 1.0,
-        });
-        let read = analyze(Cursor::new(&text), &machine, &Options::default(), None).unwrap();
+        let read = at_override(HAL, program.as_bytes(), share);
         assert!(
-            read.peak_w <= 595.0 * (1.0 + 1e-9),
-            "{share}: {}",
+            read.peak_w <= peak_w * (1.0 + 1e-9),
+            "{share}: {} {peak_w}",
             read.peak_w
         );
     }
+}
+
+/// The output fits at each override of its own.
+fn assert_fits_at_lower_overrides(rig: Rig, program: &str) {
+    let text = rig.fits(program);
+    for percent in (30..=100).step_by(5) {
+        let share = f64::from(percent) / 100.0;
+        let read = at_override(rig, text.as_ref(), share);
+        let largest_w = rig.peak_w * (1.0 + 1e-9);
+        assert!(read.peak_w <= largest_w, "{share}: {}", read.peak_w);
+    }
+}
+
+/// A program that is read at one override alone.
+fn at_override(rig: Rig, text: &[u8], share: f64) -> Summary {
+    let mut machine = rig.machine();
+    machine.limits.override_at = Some(OverrideAt {
+        feed: share,
+        rapid: share,
+        spindle: 1.0,
+    });
+    analyze(Cursor::new(text), &machine, &Options::default(), None).expect("figures")
 }
 
 proptest! {
@@ -358,10 +383,8 @@ proptest! {
         program.push_str("M2\n");
         let (text, summary) = run(&rig.machine(), rig.options, program.as_bytes()).expect("a program");
         if summary.certified {
-            for share in [1.0, 0.7, 0.4] {
-                let mut machine = rig.machine();
-                machine.limits.override_at = Some(OverrideAt { feed: share, rapid: share, spindle: 1.0 });
-                let read = analyze(Cursor::new(&text), &machine, &Options::default(), None).expect("figures");
+            for share in [1.0, 0.95, 0.85, 0.7, 0.4] {
+                let read = at_override(rig, text.as_ref(), share);
                 prop_assert!(read.peak_w <= f64::from(peak_w) * (1.0 + 1e-9), "{share}: {} {program}", read.peak_w);
             }
         }

@@ -182,8 +182,9 @@ impl<T: Copy> LinuxCnc<T> {
         next.late_mm_s = joint_mm_s + LATE_CYCLES * self.cycle_s * accel;
         // With half of the acceleration, which blends may leave.
         let brakes_mm = next.late_mm_s * next.late_mm_s / accel;
-        let faster = !overlaps && next.late_mm_s > next.run_speed();
-        next.lags = faster && next.length_mm < brakes_mm;
+        // Where it keeps up with the joint here, there is a lower override at which the element
+        // before it still reaches that speed and this one no longer does.
+        next.lags = !overlaps && next.length_mm < brakes_mm;
     }
 
     /// An element that nothing has changed yet.
