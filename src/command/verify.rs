@@ -8,6 +8,7 @@ use std::slice;
 use anyhow::{Context, Result};
 use gwatt::identify::overlay::{Agreement, Overlay, PowerTrace, overlay};
 use gwatt::identify::{MappedColumn, Outcome, merge};
+use gwatt::machine::{ALL_AXES, Machine};
 use gwatt::report::{
     OverlayChart, Verdict, VerifiedNames, verified_csv, verified_json, verified_page, verified_text,
 };
@@ -16,7 +17,7 @@ use gwatt::verify::predicted;
 use super::clash::refuse_clashes;
 use super::dialect;
 use super::input::{Program, is_dash};
-use super::into::{Merged, written};
+use super::into::{Merged, axis_of, written};
 use super::output::{Spool, Target, print};
 use super::settings::Settings;
 use super::setup::{Setup, machine_file};
@@ -51,25 +52,34 @@ pub fn run(args: &VerifyArgs, terminal: Terminal) -> Result<Verdict> {
         terminal.note(note);
     }
     let options = setup.options_for(&program);
-    let curve = program
+    let predicted = program
         .open()
         .and_then(|input| predicted(input, &setup.machine, &options, &trace));
-    let curve = match curve {
-        Ok(curve) => curve,
+    let predicted = match predicted {
+        Ok(predicted) => predicted,
         Err(failure) => {
             terminal.say(|it| dialect::failure(&setup, &program, &failure, it));
             return Ok(Verdict::Refused);
         }
     };
     let log = args.log.display().to_string();
-    let found = overlay(&curve, &trace).with_context(|| log.clone())?;
+    let found = overlay(&predicted.curve, &predicted.axes, &trace).with_context(|| log.clone())?;
     let names = VerifiedNames {
         program: program.name.clone(),
         log,
         machine: setup.machine.name.clone(),
         margin: setup.machine.limits.margin,
+        servo_factors: servo_factors(&setup.machine),
     };
     deliver(args, &names, &found, &trace, terminal)
+}
+
+/// `servo_factor_motor` of each axis.
+fn servo_factors(machine: &Machine) -> Vec<(char, f64)> {
+    let axes = machine.axes.iter().zip(ALL_AXES);
+    let axes = axes.filter_map(|(axis, id)| Some((id, axis.as_ref()?)));
+    axes.map(|(id, axis)| (id.letter() as char, axis.servo_factor_motor))
+        .collect()
 }
 
 fn read(args: &VerifyArgs) -> Result<PowerTrace> {
@@ -104,8 +114,12 @@ fn deliver(
     let is_refused = args.into.is_some() && !good && !args.force;
     let merged = match &args.into {
         Some(path) if !is_refused => {
-            let made =
-                |name: &str, text: &str| merge::margin_into_machine(name, text, found.margin());
+            let factors = found.axes.iter();
+            let factors = factors.map(|it| Ok((axis_of(it.letter)?, it.motor)));
+            let factors = factors.collect::<Result<Vec<_>>>()?;
+            let made = |name: &str, text: &str| {
+                merge::margin_into_machine(name, text, found.margin(), &factors)
+            };
             Some((path, Merged::made(path, made)?))
         }
         _ => None,
@@ -123,7 +137,7 @@ fn deliver(
     } else {
         print(|out| out.write_all(text.as_bytes()))?;
     }
-    let exceeds = found.margin() > names.margin && args.into.is_none();
+    let exceeds = args.into.is_none() && !names.covers(found);
     Ok(match written(args.into.as_deref(), is_refused, terminal) {
         Verdict::Fits => Verdict::of(good && !exceeds || args.force),
         verdict => verdict,

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::figure::Figure;
 use super::quantity::power;
-use crate::identify::overlay::{Agreement, BlockPeaks, Overlay};
+use crate::identify::overlay::{Agreement, AxisFactor, BlockPeaks, Overlay};
 
 /// Blocks that are listed for people.
 const LISTED: usize = 10;
@@ -23,6 +23,25 @@ pub struct VerifiedNames {
     pub machine: String,
     /// The margin that its file has.
     pub margin: f64,
+    /// `servo_factor_motor` that its file has of each axis.
+    pub servo_factors: Vec<(char, f64)>,
+}
+
+/// By how much a factor may be short of what was found, which is written with three digits.
+const ROUNDING: f64 = 1e-3;
+
+impl VerifiedNames {
+    /// Whether the machine file covers what was measured: by its margin alone, or with its
+    /// factors of axes.
+    #[must_use]
+    pub fn covers(&self, overlay: &Overlay) -> bool {
+        let mut axes = overlay.axes.iter();
+        let has_factors = axes.all(|axis| {
+            let present = self.servo_factors.iter().find(|it| it.0 == axis.letter);
+            present.is_some_and(|(_, factor)| axis.motor <= factor + ROUNDING)
+        });
+        overlay.margin_alone() <= self.margin || has_factors && overlay.margin() <= self.margin
+    }
 }
 
 /// The blocks that draw most above their prediction, worst first.
@@ -79,6 +98,14 @@ pub fn verified_text(names: &VerifiedNames, overlay: &Overlay) -> String {
     line("largest", format!("{} measured", power(*measured_peak_w)));
     let needed = overlay.margin();
     let only = if needed <= names.margin { "" } else { "only " };
+    let with = if overlay.axes.is_empty() {
+        ""
+    } else {
+        " with these factors"
+    };
+    for axis in &overlay.axes {
+        line(&format!("axis {}", axis.letter), axis_factor(axis));
+    }
     line(
         "peaks",
         format!(
@@ -89,7 +116,7 @@ pub fn verified_text(names: &VerifiedNames, overlay: &Overlay) -> String {
     line(
         "margin",
         format!(
-            "{needed:.3} covers them; 95 % of others {:.3}, with 95 % confidence; the machine file has {only}{}",
+            "{needed:.3} covers them{with}; 95 % of others {:.3}, with 95 % confidence; the machine file has {only}{}",
             overlay.margin_of_others(),
             names.margin
         ),
@@ -97,6 +124,23 @@ pub fn verified_text(names: &VerifiedNames, overlay: &Overlay) -> String {
     blocks_above(overlay, &mut text);
     let _ = writeln!(text, "verdict: {}", verdict(overlay));
     text
+}
+
+/// What the power of an axis shows.
+fn axis_factor(axis: &AxisFactor) -> String {
+    let AxisFactor {
+        motor,
+        peaks,
+        measured_peak_w,
+        predicted_peak_w,
+        ..
+    } = axis;
+    format!(
+        "servo_factor_motor {motor:.3} covers its {peaks} {}: {} measured, {} predicted at most",
+        if *peaks == 1 { "peak" } else { "peaks" },
+        power(*measured_peak_w),
+        power(*predicted_peak_w),
+    )
 }
 
 /// The blocks that draw more than predicted, worst first.
@@ -160,7 +204,29 @@ struct Record<'a> {
     peaks: usize,
     margin: Figure,
     margin_of_others: Figure,
+    axes: Vec<AxisRecord>,
     blocks: Vec<BlockRecord>,
+}
+
+#[derive(Serialize)]
+struct AxisRecord {
+    axis: char,
+    servo_factor_motor: Figure,
+    peaks: usize,
+    measured_peak_w: Figure,
+    predicted_peak_w: Figure,
+}
+
+impl From<&AxisFactor> for AxisRecord {
+    fn from(it: &AxisFactor) -> Self {
+        Self {
+            axis: it.letter,
+            servo_factor_motor: Figure(it.motor),
+            peaks: it.peaks,
+            measured_peak_w: Figure(it.measured_peak_w),
+            predicted_peak_w: Figure(it.predicted_peak_w),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -214,6 +280,7 @@ pub fn verified_json(
         peaks: overlay.factor.peaks,
         margin: Figure(overlay.margin()),
         margin_of_others: Figure(overlay.margin_of_others()),
+        axes: overlay.axes.iter().map(AxisRecord::from).collect(),
         blocks: overlay.blocks.iter().map(BlockRecord::from).collect(),
     };
     serde_json::to_writer_pretty(&mut out, &record)?;

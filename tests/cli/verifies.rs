@@ -17,31 +17,8 @@ fn shop() -> Shop {
         "mill.toml",
         machine.replace("margin = 0.1", "margin = 0.02"),
     );
-    let series = ["report", "part.nc", "-m", "three-axis", "--series", "s.csv"];
-    assert_eq!(
-        shop.run(&[&series[..], &["--step-ms", "0.5"]].concat())
-            .code,
-        0
-    );
-    let series = shop.get("s.csv");
-    let mut rows = series.lines();
-    let names: Vec<&str> = rows.next().unwrap().split(',').collect();
-    let place = |name| names.iter().position(|it| *it == name).unwrap();
-    let [time, drawn, fed_back] = ["time_s", "bus_w", "regen_w"].map(place);
-    let points: Vec<(f64, f64)> = rows
-        .filter(|row| row.starts_with("before"))
-        .map(|row| {
-            let cells: Vec<f64> = row.split(',').map(|it| it.parse().unwrap_or(0.0)).collect();
-            (cells[time], cells[drawn] - cells[fed_back])
-        })
-        .collect();
-    let at = |t: f64| {
-        let next = points.partition_point(|(other, _)| *other <= t);
-        match (next.checked_sub(1).map(|k| points[k]), points.get(next)) {
-            (Some((a, w)), Some((b, v))) => w + (v - w) * (t - a) / (b - a),
-            _ => 0.0,
-        }
-    };
+    let points = planned(&shop, "three-axis", &[&["bus_w", "-regen_w"]]);
+    let at = |t: f64| sampled(&points, t)[0];
     let mut log = "time_s,power_kw\n".to_owned();
     for k in 0..9000 {
         let t = f64::from(k) * 2e-3;
@@ -49,6 +26,42 @@ fn shop() -> Shop {
     }
     shop.put("log.csv", log);
     shop
+}
+
+/// The planned power of a machine over time: of each list of columns the sum.
+fn planned(shop: &Shop, machine: &str, lists: &[&[&str]]) -> Vec<(f64, Vec<f64>)> {
+    let series = ["report", "part.nc", "-m", machine, "--series", "s.csv"];
+    let ran = shop.run(&[&series[..], &["--step-ms", "0.5"]].concat());
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let series = shop.get("s.csv");
+    let mut rows = series.lines();
+    let names: Vec<&str> = rows.next().unwrap().split(',').collect();
+    let place = |name: &str| names.iter().position(|it| *it == name).unwrap();
+    let rows = rows.filter(|row| row.starts_with("before"));
+    rows.map(|row| {
+        let cells: Vec<f64> = row.split(',').map(|it| it.parse().unwrap_or(0.0)).collect();
+        let value = |name: &&str| match name.strip_prefix('-') {
+            Some(name) => -cells[place(name)],
+            None => cells[place(name)],
+        };
+        let sums = lists.iter().map(|list| list.iter().map(value).sum());
+        (cells[place("time_s")], sums.collect())
+    })
+    .collect()
+}
+
+/// What is planned at a time; nothing before and after the program.
+fn sampled(points: &[(f64, Vec<f64>)], t: f64) -> Vec<f64> {
+    let next = points.partition_point(|(other, _)| *other <= t);
+    match (next.checked_sub(1).map(|k| &points[k]), points.get(next)) {
+        (Some((a, before)), Some((b, after))) => {
+            let pairs = before.iter().zip(after);
+            pairs
+                .map(|(w, v)| w + (v - w) * (t - a) / (b - a))
+                .collect()
+        }
+        _ => vec![0.0; points[0].1.len()],
+    }
 }
 
 const VERIFY: [&str; 5] = ["verify", "part.nc", "log.csv", "-m", "mill.toml"];
@@ -179,4 +192,71 @@ fn what_cannot_be_laid_over_is_refused() {
         .refused("log.csv is read by this run");
     shop.run(&[&VERIFY[..], &["--map", "power=P*1kW"]].concat())
         .refused("there is no column P");
+}
+
+/// Drives that record their own powers; X moves 20 % more than its file says, at the same friction.
+fn shop_by_axis() -> Shop {
+    let shop = shop();
+    let machine = shop.get("mill.toml");
+    let heavy = machine.replace("inertia_kg_m2 = 0.0050", "inertia_kg_m2 = 0.0060");
+    assert_ne!(heavy, machine);
+    shop.put("heavy.toml", heavy);
+    let columns = ["x_power_w", "y_power_w", "z_power_w"];
+    let points = planned(
+        &shop,
+        "heavy.toml",
+        &columns.each_ref().map(std::slice::from_ref),
+    );
+    let mut log = format!("time_s,{}\n", columns.join(","));
+    for k in 0..9000 {
+        let t = f64::from(k) * 2e-3;
+        let [x, y, z] = sampled(&points, t - 7.0)[..] else {
+            panic!("three axes");
+        };
+        writeln!(log, "{t:.3},{x:.3},{y:.3},{z:.3}").unwrap();
+    }
+    shop.put("log.csv", log);
+    shop
+}
+
+/// By the powers of single axes it is X whose acceleration takes 1.2 times as much, and with that
+/// no margin is needed.
+#[test]
+fn factors_of_axes_are_found_and_go_into_the_machine_file() {
+    let shop = shop_by_axis();
+    // Neither the margin nor the factors of the file cover it.
+    assert_eq!(shop.run(&VERIFY).code, 1);
+    let ran = shop.run(&[&VERIFY[..], &["--json", "v.json", "--into", "mill.toml"]].concat());
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let line = ran.stdout.lines().find(|line| line.contains("axis X"));
+    let line = line.expect("a line for X");
+    assert!(
+        line.contains("servo_factor_motor 1.2") && line.contains(" covers its 4 peaks: "),
+        "{}",
+        ran.stdout
+    );
+    let json: serde_json::Value = serde_json::from_str(&shop.get("v.json")).unwrap();
+    let factors = json["axes"].as_array().unwrap().iter();
+    let factors: Vec<f64> = factors
+        .map(|it| it["servo_factor_motor"].as_f64().unwrap())
+        .collect();
+    assert!((factors[0] - 1.2).abs() < 0.015, "{json}");
+    for other in &factors[1..] {
+        assert!((other - 1.0).abs() < 0.015, "{json}");
+    }
+    let margin = json["margin"].as_f64().unwrap();
+    assert!(margin < 0.01, "{json}");
+    let written = shop.get("mill.toml");
+    let x = written.split("[axes.Y]").next().unwrap();
+    assert!(x.contains("servo_factor_motor = 1.2"), "{written}");
+    assert!(written.contains("margin = 0.02"), "{written}");
+    // Once it is there, the recording is covered, and there is nothing more to write.
+    assert_eq!(shop.run(&VERIFY).code, 0);
+    let again = shop.run(&[&VERIFY[..], &["--into", "mill.toml"]].concat());
+    assert!(
+        again.stderr.contains("mill.toml is as it was"),
+        "{}",
+        again.stderr
+    );
+    assert_eq!(shop.get("mill.toml"), written);
 }

@@ -75,14 +75,31 @@ pub fn into_machine(
     finished(path, &document)
 }
 
-/// Raises the margin of a machine file to `margin`, a share, unless it has a larger one; all
-/// else stays byte for byte. `path` is what messages call it.
+/// Raises the margin of a machine file to `margin`, a share, and `servo_factor_motor` of axes to
+/// `factors`, unless it has larger ones; all else stays byte for byte. `path` is what messages
+/// call it.
 ///
 /// # Errors
 ///
 /// When the file is no sound machine file, before or after.
-pub fn margin_into_machine(path: &str, text: &str, margin: f64) -> Outcome<String> {
+pub fn margin_into_machine(
+    path: &str,
+    text: &str,
+    margin: f64,
+    factors: &[(AxisId, f64)],
+) -> Outcome<String> {
     let mut document = sound(path, text)?;
+    for (axis, factor) in factors {
+        let item = axis_item(&mut document, *axis).ok_or_else(|| no_axis(path, *axis))?;
+        let table = item.as_table_like_mut();
+        let table = table.ok_or_else(|| no_axis(path, *axis))?;
+        let key = "servo_factor_motor";
+        let factor = libm::ceil(factor * 1000.0) / 1000.0;
+        let present = table.get(key).and_then(number_of).unwrap_or(1.0);
+        if factor > present {
+            set(table, key, factor);
+        }
+    }
     raise_margin(&mut document, margin);
     finished(path, &document)
 }

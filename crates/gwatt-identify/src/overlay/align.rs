@@ -386,7 +386,7 @@ mod tests {
         ] {
             let curve = program(seed, blocks);
             let log = log(&curve, step_s, place, 1.0);
-            let found = overlay(&curve, &log).unwrap();
+            let found = overlay(&curve, &[], &log).unwrap();
             let (start_s, pace, gain) = place;
             assert_eq!(
                 found.agreement(),
@@ -418,7 +418,7 @@ mod tests {
     fn what_the_meter_averages_over_is_found() {
         let curve = program(5, 60);
         let log = log(&curve, 0.005, (1.0, 1.0, 1.2), 20.0);
-        let found = overlay(&curve, &log).unwrap();
+        let found = overlay(&curve, &[], &log).unwrap();
         assert!(
             (found.averaging_s - 0.1).abs() < 1e-9,
             "{}",
@@ -445,7 +445,7 @@ mod tests {
                 *w *= 1.3;
             }
         }
-        let found = overlay(&curve, &log).unwrap();
+        let found = overlay(&curve, &[], &log).unwrap();
         let worst = found.blocks.iter().max_by(|a, b| {
             let excess = |it: &super::super::BlockPeaks| it.measured_w - it.predicted_w;
             excess(a).total_cmp(&excess(b))
@@ -464,26 +464,26 @@ mod tests {
         log.time_s.push(3e7);
         log.power_w.push(150.0);
         // Nothing of a few seconds can be seen in windows of hours.
-        assert!(overlay(&curve, &log).is_err());
+        assert!(overlay(&curve, &[], &log).is_err());
     }
 
     #[test]
     fn another_program_is_not_good() {
         let log = log(&program(8, 40), 0.01, (1.0, 1.0, 1.0), 1.0);
-        let found = overlay(&program(9, 40), &log).unwrap();
+        let found = overlay(&program(9, 40), &[], &log).unwrap();
         assert_eq!(
             found.agreement(),
             Agreement::AnotherProgram,
             "{}",
             found.correlation
         );
-        let empty = overlay(&Curve::new(0.0), &log).unwrap_err();
+        let empty = overlay(&Curve::new(0.0), &[], &log).unwrap_err();
         assert_eq!(empty.message, "the program takes no time");
         let flat = PowerTrace {
             power_w: vec![200.0; log.time_s.len()],
             ..log
         };
-        let found = overlay(&program(9, 40), &flat).unwrap_err();
+        let found = overlay(&program(9, 40), &[], &flat).unwrap_err();
         assert_eq!(
             found.message,
             "the log does not go up and down as the program would"

@@ -71,6 +71,23 @@ impl Curve {
         found
     }
 
+    /// The same with so many times the other curves, where they draw, on top; these have
+    /// points at the same times.
+    pub(super) fn raised<'a>(&self, others: impl Iterator<Item = (f64, &'a Self)>) -> Self {
+        let mut power_w = self.power_w.clone();
+        for (times, other) in others {
+            for (own, more) in power_w.iter_mut().zip(&other.power_w) {
+                *own += times * more.max(0.0);
+            }
+        }
+        let mut raised = Self::new(self.rest_w);
+        let points = self.time_s.iter().zip(power_w).zip(&self.block);
+        for ((time_s, power_w), block) in points {
+            raised.push(*time_s, power_w, *block);
+        }
+        raised
+    }
+
     /// What reads the curve at times that ascend.
     #[must_use]
     pub fn reader(&self) -> Reader<'_> {

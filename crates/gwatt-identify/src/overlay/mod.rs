@@ -2,17 +2,19 @@
 //!
 //! Input: the predicted power of a program as a [`Curve`], and a [`PowerTrace`]. Output: when
 //! the program begins in the log and at what pace it runs, how long the meter averages, how far
-//! both agree, and by which factor measured peaks exceed predicted ones, of all and block by
-//! block.
+//! both agree, and by which factor measured peaks exceed predicted ones, of all, block by block
+//! and, where the log has them, axis by axis.
 
 mod align;
+mod axes;
 mod curve;
 mod peaks;
 mod trace;
 
+pub use axes::{AxisCurve, AxisFactor};
 pub use curve::Curve;
 pub use peaks::BlockPeaks;
-pub use trace::PowerTrace;
+pub use trace::{AxisTrace, PowerTrace};
 
 use crate::error::{IdentifyError, Outcome};
 use crate::peak_factor::PeakFactor;
@@ -55,8 +57,12 @@ pub struct Overlay {
     pub energy_ratio: f64,
     /// The largest power measured while the program runs, W.
     pub measured_peak_w: f64,
-    /// By which factor peaks exceed their prediction.
+    /// By which factor peaks exceed their prediction, with the factors of axes, if there are any.
     pub factor: PeakFactor,
+    /// The same without these.
+    pub factor_alone: PeakFactor,
+    /// By which factors the acceleration of axes draws more, where the log has their powers.
+    pub axes: Vec<AxisFactor>,
     /// The largest powers of each block, in order of their numbers.
     pub blocks: Vec<BlockPeaks>,
     /// The prediction as the meter would show it, W, at each sample of the log.
@@ -104,18 +110,24 @@ impl Overlay {
         1.0 - 1.0 / self.factor.seen
     }
 
-    /// The same for 95 % of peaks that were not recorded, with 95 % confidence.
+    /// The same where the machine file has none of the factors of axes that were found.
+    #[must_use]
+    pub fn margin_alone(&self) -> f64 {
+        1.0 - 1.0 / self.factor_alone.seen
+    }
+
+    /// That next to the factors of axes, for 95 % of peaks that were not recorded, with 95 % confidence.
     #[must_use]
     pub fn margin_of_others(&self) -> f64 {
         1.0 - 1.0 / self.factor.factor
     }
 }
 
-/// Lays a log over a prediction.
+/// Lays a log over a prediction; `axes`: the same of single axes, with points at the same times.
 ///
 /// # Errors
 /// When the program takes no time, or nothing of both goes up and down together.
-pub fn overlay(curve: &Curve, log: &PowerTrace) -> Outcome<Overlay> {
+pub fn overlay(curve: &Curve, axes: &[AxisCurve], log: &PowerTrace) -> Outcome<Overlay> {
     if curve.duration_s() <= 0.0 {
         return Err(IdentifyError::new(
             "the program takes no time",
@@ -149,8 +161,21 @@ pub fn overlay(curve: &Curve, log: &PowerTrace) -> Outcome<Overlay> {
         error += (own - model) * (own - model);
     }
     let gain = if square > 0.0 { both / square } else { 1.0 };
+    let pairs = axes.iter().filter_map(|axis| {
+        let own = log.axes.iter().find(|own| own.letter == axis.letter)?;
+        Some((axis, axes::factor(axis, own, log, place, width_s)?))
+    });
+    let pairs: Vec<(&AxisCurve, AxisFactor)> = pairs.collect();
+    let more = pairs.iter().map(|(axis, it)| (it.motor - 1.0, &axis.accel));
     let near_w = largest_near(curve, log, place, width_s);
-    let peaks = peaks::compare(curve, log, &near_w, place);
+    let alone = peaks::compare(curve, log, &near_w, place);
+    let factor_alone = alone.factor;
+    let peaks = if pairs.is_empty() {
+        alone
+    } else {
+        let near_w = largest_near(&curve.raised(more), log, place, width_s);
+        peaks::compare(curve, log, &near_w, place)
+    };
     Ok(Overlay {
         start_s: place.start_s,
         pace,
@@ -162,6 +187,8 @@ pub fn overlay(curve: &Curve, log: &PowerTrace) -> Outcome<Overlay> {
         energy_ratio: measured / predicted,
         measured_peak_w: running.iter().map(|it| it.0).fold(0.0, f64::max),
         factor: peaks.factor,
+        factor_alone,
+        axes: pairs.into_iter().map(|(_, factor)| factor).collect(),
         blocks: peaks.blocks,
         predicted_w,
     })
@@ -227,13 +254,18 @@ fn averaged(curve: &Curve, log: &PowerTrace, place: Place) -> (Place, f64) {
 /// its end.
 fn largest_near(curve: &Curve, log: &PowerTrace, place: Place, width_s: f64) -> Vec<f64> {
     let slack_s = SLACK * log.step_s() + width_s / 2.0;
-    let times = &log.time_s;
+    let looked_at_s = times_looked_at(curve, log, place);
+    let shown = shown(curve, &looked_at_s, place, width_s);
+    peaks::largest_near(&log.time_s, (&looked_at_s, &shown), slack_s)
+}
+
+/// The times of samples, and those at which pieces of the curve end, in order.
+fn times_looked_at(curve: &Curve, log: &PowerTrace, place: Place) -> Vec<f64> {
     let pace = place.pace(curve);
     let ends = curve.times_s().iter().map(|t| place.start_s + t * pace);
-    let mut looked_at_s: Vec<f64> = ends.chain(times.iter().copied()).collect();
+    let mut looked_at_s: Vec<f64> = ends.chain(log.time_s.iter().copied()).collect();
     looked_at_s.sort_by(f64::total_cmp);
-    let shown = shown(curve, &looked_at_s, place, width_s);
-    peaks::largest_near(times, (&looked_at_s, &shown), slack_s)
+    looked_at_s
 }
 
 fn correlation(a: &[f64], b: &[f64]) -> f64 {

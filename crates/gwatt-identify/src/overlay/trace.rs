@@ -19,14 +19,26 @@ pub struct PowerTrace {
     pub time_s: Vec<f64>,
     /// Power drawn at these times, W; what is fed back counts negative.
     pub power_w: Vec<f64>,
+    /// The power of single axes, where columns have it.
+    pub axes: Vec<AxisTrace>,
     /// How columns were understood.
     pub notes: Vec<String>,
 }
 
+/// The recorded power of one axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxisTrace {
+    /// The letter of the axis, large.
+    pub letter: char,
+    /// Its power at the times of the log, W; NaN in rows without a value.
+    pub power_w: Vec<f64>,
+}
+
 impl PowerTrace {
     /// Reads a table with a column of times (`time_s`, `time_ms`) and one of powers
-    /// (`power_w`, `power_kw`); several of single axes (`x_power_w`) are added up. `map` says
-    /// what other columns hold. Rows without a value are passed over.
+    /// (`power_w`, `power_kw`); several of single axes (`x_power_w`) are kept, and added up
+    /// where there is none of all. `map` says what other columns hold. Rows without a value
+    /// are passed over.
     ///
     /// # Errors
     ///
@@ -34,8 +46,13 @@ impl PowerTrace {
     pub fn read(input: impl Read, map: &[MappedColumn]) -> Outcome<Self> {
         let mut rows = Rows::open(input)?;
         let columns = Columns::of(&rows.names, map)?;
+        let axes = columns.axes.iter().map(|(letter, _)| AxisTrace {
+            letter: *letter,
+            power_w: Vec::new(),
+        });
         let mut trace = Self {
             notes: columns.notes.clone(),
+            axes: axes.collect(),
             ..Self::default()
         };
         while let Some(line) = rows.next_line()? {
@@ -71,6 +88,10 @@ impl PowerTrace {
             }
             trace.time_s.push(time_s);
             trace.power_w.push(power_w);
+            for ((_, (index, to_w)), axis) in columns.axes.iter().zip(&mut trace.axes) {
+                let power_w = value(*index)?.map_or(f64::NAN, |power| power * to_w);
+                axis.power_w.push(power_w);
+            }
             if trace.time_s.len() > SAMPLES_MAX {
                 return Err(IdentifyError::new(
                     format!("the log has more than {SAMPLES_MAX} rows"),
@@ -107,6 +128,8 @@ impl PowerTrace {
 struct Columns {
     time: (usize, f64),
     powers: Vec<(usize, f64)>,
+    /// Of single axes, with their letters.
+    axes: Vec<(char, (usize, f64))>,
     notes: Vec<String>,
 }
 
@@ -117,8 +140,10 @@ impl Columns {
         let mut by_axis = Vec::new();
         let mut put = |quantity, place: (usize, f64), axis: Option<char>| match quantity {
             Quantity::Time => times.push(place),
-            Quantity::Power if axis.is_some() => by_axis.push(place),
-            Quantity::Power => whole.push(place),
+            Quantity::Power => match axis {
+                Some(axis) => by_axis.push((axis.to_ascii_uppercase(), place)),
+                None => whole.push(place),
+            },
             _ => {}
         };
         if map.is_empty() {
@@ -159,7 +184,7 @@ impl Columns {
                     "the power is the sum of {} columns of single axes, without what else the machine draws",
                     by_axis.len()
                 ));
-                by_axis
+                by_axis.iter().map(|(_, place)| *place).collect()
             }
             ([_], _) | (_, false) => whole,
             _ => {
@@ -172,6 +197,7 @@ impl Columns {
         Ok(Self {
             time: *time,
             powers,
+            axes: by_axis,
             notes,
         })
     }

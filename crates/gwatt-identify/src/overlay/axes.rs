@@ -1,0 +1,94 @@
+//! The power of single axes next to its prediction: by which factor their acceleration draws
+//! more.
+//!
+//! A servo factor multiplies the acceleration, not the friction. Of each recorded power the least
+//! factor counts with which the prediction reaches it somewhere near that time.
+
+use super::align::Place;
+use super::curve::Curve;
+use super::trace::{AxisTrace, PowerTrace};
+use super::{SLACK, shown, times_looked_at};
+
+/// Share of an axis' largest predicted power above which a sample belongs to a peak.
+const HALF: f64 = 0.5;
+/// Share of the predicted power that the acceleration must have: where friction is most of it,
+/// more power says nothing of the acceleration.
+const LEADS: f64 = 0.5;
+
+/// The predicted power of one axis.
+#[derive(Debug, Clone, Default)]
+pub struct AxisCurve {
+    /// The letter of the axis, large.
+    pub letter: char,
+    /// What it draws, W; negative where it feeds back.
+    pub power: Curve,
+    /// By how much that grows, W, where the acceleration is twice as large: what its servo
+    /// factor multiplies. 0 where it draws nothing.
+    pub accel: Curve,
+}
+
+/// By which factor the acceleration of an axis draws more than predicted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisFactor {
+    /// The letter of the axis, large.
+    pub letter: char,
+    /// `servo_factor_motor` with which no peak exceeds its prediction; at least 1.
+    pub motor: f64,
+    /// The peaks in which it speeds up.
+    pub peaks: usize,
+    /// The largest power measured, W.
+    pub measured_peak_w: f64,
+    /// The largest power predicted, W.
+    pub predicted_peak_w: f64,
+}
+
+/// The factor of an axis; `None` where the log has no peak of its acceleration.
+pub(super) fn factor(
+    curve: &AxisCurve,
+    own: &AxisTrace,
+    log: &PowerTrace,
+    place: Place,
+    width_s: f64,
+) -> Option<AxisFactor> {
+    let looked_at_s = times_looked_at(&curve.power, log, place);
+    let power = shown(&curve.power, &looked_at_s, place, width_s);
+    let accel = shown(&curve.accel, &looked_at_s, place, width_s);
+    let points: Vec<(f64, f64, f64)> = looked_at_s
+        .iter()
+        .zip(power.iter().zip(&accel))
+        .map(|(t, (power_w, accel_w))| (*t, *power_w, *accel_w))
+        .collect();
+    let predicted_peak_w = power.iter().copied().fold(0.0, f64::max);
+    let slack_s = SLACK * log.step_s() + width_s / 2.0;
+    let (mut from, mut is_inside) = (0, false);
+    let (mut motor, mut peaks, mut measured_peak_w) = (1.0_f64, 0, 0.0_f64);
+    for (t, measured_w) in log.time_s.iter().zip(&own.power_w) {
+        while points.get(from).is_some_and(|it| it.0 < t - slack_s) {
+            from += 1;
+        }
+        if !(place.start_s..=place.end_s).contains(t) || measured_w.is_nan() {
+            continue;
+        }
+        measured_peak_w = measured_peak_w.max(*measured_w);
+        let near = points.get(from..).unwrap_or_default();
+        let near = near.iter().take_while(|it| it.0 <= t + slack_s);
+        let most = near.clone().max_by(|a, b| a.1.total_cmp(&b.1));
+        let is_peak = most.is_some_and(|(_, power_w, accel_w)| {
+            *power_w > 0.0 && *power_w >= HALF * predicted_peak_w && *accel_w >= LEADS * power_w
+        });
+        if is_peak {
+            let needed = near.filter(|it| it.2 > 0.0);
+            let needed = needed.map(|(_, power_w, accel_w)| 1.0 + (measured_w - power_w) / accel_w);
+            motor = motor.max(needed.fold(f64::INFINITY, f64::min));
+            peaks += usize::from(!is_inside);
+        }
+        is_inside = is_peak;
+    }
+    (peaks > 0 && motor.is_finite()).then_some(AxisFactor {
+        letter: curve.letter,
+        motor,
+        peaks,
+        measured_peak_w,
+        predicted_peak_w,
+    })
+}
