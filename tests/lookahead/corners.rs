@@ -40,6 +40,18 @@ fn deviation(per_axis: bool) -> CornerRule {
         deviation_mm: 0.02,
         angle: CornerAngle::AllAxes,
         per_axis,
+        block_accel: false,
+        small_block_mm: 0.0,
+    }
+}
+
+/// As Marlin has it.
+fn within_block() -> CornerRule {
+    CornerRule::JunctionDeviation {
+        deviation_mm: 0.02,
+        angle: CornerAngle::AllAxes,
+        per_axis: true,
+        block_accel: true,
         small_block_mm: 0.0,
     }
 }
@@ -51,9 +63,12 @@ fn junction_deviation() {
     let square = (1000.0 * 0.02 * s / (1.0 - s)).sqrt();
     let along_x = [100.0, 0.0, 0.0];
     assert_close(corner(deviation(false), along_x, [0.0, 100.0, 0.0]), square);
-    // The change of speed runs along a diagonal: √2 of an axis' acceleration,
-    // but not more than the block's own.
-    assert_close(corner(deviation(true), along_x, [0.0, 100.0, 0.0]), square);
+    // The change of speed runs along a diagonal: √2 of an axis' acceleration (grbl),
+    // but not more than the block's own (Marlin).
+    let diagonal = square * 2.0_f64.sqrt().sqrt();
+    let along_y = [0.0, 100.0, 0.0];
+    assert_close(corner(deviation(true), along_x, along_y), diagonal);
+    assert_close(corner(within_block(), along_x, along_y), square);
     // Straight on: no limit. Back: a stop.
     assert_close(corner(deviation(false), along_x, along_x), 200.0);
     assert_eq!(corner(deviation(false), along_x, [-100.0, 0.0, 0.0]), 0.0);

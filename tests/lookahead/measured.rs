@@ -11,6 +11,7 @@ const RULE: LookAhead = LookAhead {
         deviation_mm: 0.02,
         angle: CornerAngle::Linear,
         per_axis: false,
+        block_accel: false,
         small_block_mm: 0.0,
     },
     blocks: Some(31),

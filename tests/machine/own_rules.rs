@@ -34,9 +34,19 @@ fn what_is_given_takes_its_place() {
         deviation_mm: 0.05,
         angle: CornerAngle::AllAxes,
         per_axis: true,
+        block_accel: true,
         small_block_mm: 1.0,
     };
     assert_eq!(rules(&own).corner, expected);
+    // grbl's corners obey the axes alone, Marlin's the block's acceleration as well.
+    let expected = CornerRule::JunctionDeviation {
+        deviation_mm: 0.01,
+        angle: CornerAngle::AllAxes,
+        per_axis: true,
+        block_accel: false,
+        small_block_mm: 0.0,
+    };
+    assert_eq!(rules(&machine(&under("grbl", ""))).corner, expected);
 }
 
 /// Another kind of rule takes the place of the profile's; steps of axes that are not named

@@ -42,6 +42,8 @@ pub enum CornerRule {
         /// `a` is what the axes permit in the direction of the change of
         /// speed, not the block's own acceleration.
         per_axis: bool,
+        /// With `per_axis`, `a` is not above the block's acceleration either.
+        block_accel: bool,
         /// In turns of more than 135 degrees inside, blocks shorter than this
         /// in mm also keep to the circle that they are chords of; 0: not.
         small_block_mm: f64,

@@ -24,6 +24,7 @@ const STRAIGHT_ON: LookAhead = LookAhead {
         deviation_mm: 1.0,
         angle: CornerAngle::AllAxes,
         per_axis: false,
+        block_accel: false,
         small_block_mm: 0.0,
     },
     blocks: None,

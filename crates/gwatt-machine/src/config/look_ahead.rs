@@ -62,6 +62,9 @@ pub(crate) struct DeviationTable {
     /// Whether the axes' limits in the direction of the corner count, not the
     /// block's acceleration; default false.
     pub(crate) per_axis: Option<bool>,
+    /// Whether with `per_axis` the block's acceleration counts as well, as in Marlin; default
+    /// false.
+    pub(crate) block_accel: Option<bool>,
     /// Blocks shorter than this also keep to the circle that they are chords
     /// of; default 0: none do.
     pub(crate) small_block_mm: Option<NotNegative>,
@@ -257,14 +260,15 @@ fn linuxcnc(table: &LinuxCncTable, base: Option<&CornerRule>) -> CornerRule {
 }
 
 fn deviation(table: &DeviationTable, base: Option<&CornerRule>) -> Option<CornerRule> {
-    let (angle, per_axis, small) = match base {
+    let (angle, per_axis, block_accel, small) = match base {
         Some(CornerRule::JunctionDeviation {
             angle,
             per_axis,
+            block_accel,
             small_block_mm,
             ..
-        }) => (*angle, *per_axis, *small_block_mm),
-        _ => (CornerAngle::AllAxes, false, 0.0),
+        }) => (*angle, *per_axis, *block_accel, *small_block_mm),
+        _ => (CornerAngle::AllAxes, false, false, 0.0),
     };
     Some(CornerRule::JunctionDeviation {
         deviation_mm: table.deviation_mm.as_ref()?.value,
@@ -274,6 +278,7 @@ fn deviation(table: &DeviationTable, base: Option<&CornerRule>) -> Option<Corner
             None => angle,
         },
         per_axis: table.per_axis.unwrap_or(per_axis),
+        block_accel: table.block_accel.unwrap_or(block_accel),
         small_block_mm: or(table.small_block_mm.as_ref(), small),
     })
 }
