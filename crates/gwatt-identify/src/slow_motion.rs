@@ -101,7 +101,8 @@ pub(super) fn slow_motion(recording: &Recording) -> Option<(SlowMotion, Speed)> 
         let head = |x: &'_ [f64]| x.get(..compared).unwrap_or_default().to_vec();
         let slow = Slow::of(&head(force), &head(&acceleration), t);
         let plain = all.iter().map(|speed| Speed::alone(head(&speed.plain)));
-        let by = friction_of_the_followed(&slow, &head(measured), &head(force), plain.collect());
+        let sums: Vec<Speed> = plain.collect();
+        let by = friction_of_the_followed(&slow, &head(measured), &head(force), &sums);
         all.extend(by.map(|by| Speed::alone(followed(measured, force, by, t))));
     }
     let slow = Slow::of(force, &acceleration, t);
@@ -119,7 +120,7 @@ fn friction_of_the_followed(
     slow: &Slow,
     acceleration: &[f64],
     force: &[f64],
-    sums: Vec<Speed>,
+    sums: &[Speed],
 ) -> Option<Followed> {
     let sums = sums.iter().filter_map(|sum| slow.solved(sum, true));
     let sum = sums.min_by(|a, b| a.left.total_cmp(&b.left))?;

@@ -108,7 +108,11 @@ fn friction_of_motion_one_way_is_right_next_to_the_noise_of_its_speed() {
 fn friction_of_motion_one_way_at_random_is_right_where_it_is_good() {
     let is_wrong = |case: u64| {
         let mean = [0.3, 0.6, 1.2, -2.5][(case / 4 % 4) as usize];
-        let noise = if case / 2 % 2 == 0 { 0.002 } else { 0.0002 };
+        let noise = if (case / 2).is_multiple_of(2) {
+            0.002
+        } else {
+            0.0002
+        };
         let (is_good, worst) = judged_one_way(mean, case.is_multiple_of(2), noise, 100 + case);
         is_good && worst > 3.0
     };
