@@ -14,14 +14,15 @@ Examples:
   gwatt verify part.ngc meter.txt -m mill.toml --map power=P*1kW --map time=#1*1ms
 
 Columns: time_s (or _ms) and power_w (or _kw); several by axis (x_power_w) are
-added up. What is fed back counts negative, where the meter shows it. Record at
+added up where there is none of all. What is fed back counts negative, where the meter shows it. Record at
 100 % override, from before the program begins until it has ended.
 
 The margin that --into writes covers the largest peak by which the log exceeds the
-prediction; how much others may need is said too.
+prediction; how much others may need is said too. With powers by axis it writes
+servo_factor_motor of each axis, and the margin that is missing beyond these.
 
 Exit status 1: the verdict is not good, or peaks exceed their prediction by more
-than the margin of the machine file.";
+than the machine file covers.";
 
 /// Arguments of `verify`.
 #[derive(Debug, Clone, Args)]
@@ -52,7 +53,7 @@ pub struct VerifyArgs {
     /// Write a page with both curves, the verdict and the blocks; one file, no network
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
-    /// Raise the margin of this machine file to what was found if the verdict is good, and
+    /// Raise the margin, and servo factors of axes, in this machine file to what was found if the verdict is good, and
     /// keep it as MACHINE.bak
     #[arg(long, value_name = "MACHINE")]
     pub into: Option<PathBuf>,

@@ -118,7 +118,7 @@ fn deliver(
             let factors = factors.map(|it| Ok((axis_of(it.letter)?, it.motor)));
             let factors = factors.collect::<Result<Vec<_>>>()?;
             let made = |name: &str, text: &str| {
-                merge::margin_into_machine(name, text, found.margin(), &factors)
+                merge::margin_into_machine(name, text, found.margin_beyond_axes(), &factors)
             };
             Some((path, Merged::made(path, made)?))
         }

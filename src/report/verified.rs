@@ -27,9 +27,6 @@ pub struct VerifiedNames {
     pub servo_factors: Vec<(char, f64)>,
 }
 
-/// By how much a factor may be short of what was found, which is written with three digits.
-const ROUNDING: f64 = 1e-3;
-
 impl VerifiedNames {
     /// Whether the machine file covers what was measured: by its margin alone, or with its
     /// factors of axes.
@@ -38,9 +35,10 @@ impl VerifiedNames {
         let mut axes = overlay.axes.iter();
         let has_factors = axes.all(|axis| {
             let present = self.servo_factors.iter().find(|it| it.0 == axis.letter);
-            present.is_some_and(|(_, factor)| axis.motor <= factor + ROUNDING)
+            present.is_some_and(|(_, factor)| axis.motor <= *factor)
         });
-        overlay.margin_alone() <= self.margin || has_factors && overlay.margin() <= self.margin
+        overlay.margin() <= self.margin
+            || has_factors && overlay.margin_beyond_axes() <= self.margin
     }
 }
 
@@ -98,10 +96,11 @@ pub fn verified_text(names: &VerifiedNames, overlay: &Overlay) -> String {
     line("largest", format!("{} measured", power(*measured_peak_w)));
     let needed = overlay.margin();
     let only = if needed <= names.margin { "" } else { "only " };
-    let with = if overlay.axes.is_empty() {
-        ""
+    let beyond = if overlay.axes.is_empty() {
+        String::new()
     } else {
-        " with these factors"
+        let beyond = overlay.margin_beyond_axes();
+        format!(", or {beyond:.3} next to the factors of axes")
     };
     for axis in &overlay.axes {
         line(&format!("axis {}", axis.letter), axis_factor(axis));
@@ -116,7 +115,7 @@ pub fn verified_text(names: &VerifiedNames, overlay: &Overlay) -> String {
     line(
         "margin",
         format!(
-            "{needed:.3} covers them{with}; 95 % of others {:.3}, with 95 % confidence; the machine file has {only}{}",
+            "{needed:.3} covers them{beyond}; 95 % of others {:.3}, with 95 % confidence; the machine file has {only}{}",
             overlay.margin_of_others(),
             names.margin
         ),
@@ -204,6 +203,7 @@ struct Record<'a> {
     peaks: usize,
     margin: Figure,
     margin_of_others: Figure,
+    margin_beyond_axes: Figure,
     axes: Vec<AxisRecord>,
     blocks: Vec<BlockRecord>,
 }
@@ -280,6 +280,7 @@ pub fn verified_json(
         peaks: overlay.factor.peaks,
         margin: Figure(overlay.margin()),
         margin_of_others: Figure(overlay.margin_of_others()),
+        margin_beyond_axes: Figure(overlay.margin_beyond_axes()),
         axes: overlay.axes.iter().map(AxisRecord::from).collect(),
         blocks: overlay.blocks.iter().map(BlockRecord::from).collect(),
     };

@@ -95,8 +95,13 @@ pub fn margin_into_machine(
         let table = table.ok_or_else(|| no_axis(path, *axis))?;
         let key = "servo_factor_motor";
         let factor = libm::ceil(factor * 1000.0) / 1000.0;
-        let present = table.get(key).and_then(number_of).unwrap_or(1.0);
-        if factor > present {
+        // What follows from loops counts as well.
+        let machine = Machine::from_toml(path, text).ok();
+        let present = machine.and_then(|(machine, _)| {
+            let own = machine.axes.get(*axis as usize)?.as_ref()?;
+            Some(own.servo_factor_motor)
+        });
+        if present.is_none_or(|present| factor > present) {
             set(table, key, factor);
         }
     }

@@ -11,7 +11,7 @@
 const COVERED: f64 = 1.644_854;
 const SURE: f64 = 1.644_854;
 /// Share of the model's peak above which a row belongs to a peak.
-const HALF: f64 = 0.5;
+pub(crate) const HALF: f64 = 0.5;
 
 /// A factor for peaks, and where it comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,9 +8,8 @@ use super::align::Place;
 use super::curve::Curve;
 use super::trace::{AxisTrace, PowerTrace};
 use super::{SLACK, shown, times_looked_at};
+use crate::peak_factor::HALF;
 
-/// Share of an axis' largest predicted power above which a sample belongs to a peak.
-const HALF: f64 = 0.5;
 /// Share of the predicted power that the acceleration must have: where friction is most of it,
 /// more power says nothing of the acceleration.
 const LEADS: f64 = 0.5;

@@ -57,12 +57,12 @@ pub struct Overlay {
     pub energy_ratio: f64,
     /// The largest power measured while the program runs, W.
     pub measured_peak_w: f64,
-    /// By which factor peaks exceed their prediction, with the factors of axes, if there are any.
+    /// By which factor peaks exceed their prediction.
     pub factor: PeakFactor,
-    /// The same without these.
-    pub factor_alone: PeakFactor,
     /// By which factors the acceleration of axes draws more, where the log has their powers.
     pub axes: Vec<AxisFactor>,
+    /// By which factor peaks exceed the prediction that has these.
+    pub factor_beyond_axes: PeakFactor,
     /// The largest powers of each block, in order of their numbers.
     pub blocks: Vec<BlockPeaks>,
     /// The prediction as the meter would show it, W, at each sample of the log.
@@ -110,13 +110,13 @@ impl Overlay {
         1.0 - 1.0 / self.factor.seen
     }
 
-    /// The same where the machine file has none of the factors of axes that were found.
+    /// The same where the machine file has the factors of axes that were found.
     #[must_use]
-    pub fn margin_alone(&self) -> f64 {
-        1.0 - 1.0 / self.factor_alone.seen
+    pub fn margin_beyond_axes(&self) -> f64 {
+        1.0 - 1.0 / self.factor_beyond_axes.seen
     }
 
-    /// That next to the factors of axes, for 95 % of peaks that were not recorded, with 95 % confidence.
+    /// The margin for 95 % of peaks that were not recorded, with 95 % confidence.
     #[must_use]
     pub fn margin_of_others(&self) -> f64 {
         1.0 - 1.0 / self.factor.factor
@@ -168,13 +168,12 @@ pub fn overlay(curve: &Curve, axes: &[AxisCurve], log: &PowerTrace) -> Outcome<O
     let pairs: Vec<(&AxisCurve, AxisFactor)> = pairs.collect();
     let more = pairs.iter().map(|(axis, it)| (it.motor - 1.0, &axis.accel));
     let near_w = largest_near(curve, log, place, width_s);
-    let alone = peaks::compare(curve, log, &near_w, place);
-    let factor_alone = alone.factor;
-    let peaks = if pairs.is_empty() {
-        alone
+    let peaks = peaks::compare(curve, log, &near_w, place);
+    let factor_beyond_axes = if pairs.is_empty() {
+        peaks.factor
     } else {
         let near_w = largest_near(&curve.raised(more), log, place, width_s);
-        peaks::compare(curve, log, &near_w, place)
+        peaks::factor(log, &near_w, place)
     };
     Ok(Overlay {
         start_s: place.start_s,
@@ -187,8 +186,8 @@ pub fn overlay(curve: &Curve, axes: &[AxisCurve], log: &PowerTrace) -> Outcome<O
         energy_ratio: measured / predicted,
         measured_peak_w: running.iter().map(|it| it.0).fold(0.0, f64::max),
         factor: peaks.factor,
-        factor_alone,
         axes: pairs.into_iter().map(|(_, factor)| factor).collect(),
+        factor_beyond_axes,
         blocks: peaks.blocks,
         predicted_w,
     })

@@ -39,6 +39,14 @@ pub(super) struct Peaks {
 /// Compares the peaks of a log with those of the prediction. Either may be a little late: a
 /// measured power counts against the largest that is predicted near it.
 pub(super) fn compare(curve: &Curve, log: &PowerTrace, near_w: &[f64], place: Place) -> Peaks {
+    Peaks {
+        factor: factor(log, near_w, place),
+        blocks: by_block(curve, log, near_w, place),
+    }
+}
+
+/// By which factor the peaks of a log exceed what is predicted near them.
+pub(super) fn factor(log: &PowerTrace, near_w: &[f64], place: Place) -> PeakFactor {
     let inside = |t: f64| t >= place.start_s && t <= place.end_s;
     let of = |values: &[f64]| -> Vec<f64> {
         let all = log.time_s.iter().zip(values);
@@ -46,11 +54,7 @@ pub(super) fn compare(curve: &Curve, log: &PowerTrace, near_w: &[f64], place: Pl
     };
     let (near, measured) = (of(near_w), of(&log.power_w));
     let peak_w = near.iter().copied().fold(0.0, f64::max);
-    let factor = factor_of(&ratios(&near, &measured, peak_w));
-    Peaks {
-        factor,
-        blocks: by_block(curve, log, near_w, place),
-    }
+    factor_of(&ratios(&near, &measured, peak_w))
 }
 
 /// At each time the largest of the values whose own times are so near; both ascend.
