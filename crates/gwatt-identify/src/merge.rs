@@ -89,21 +89,34 @@ pub fn margin_into_machine(
     factors: &[(AxisId, f64)],
 ) -> Outcome<String> {
     let mut document = sound(path, text)?;
+    let machine = Machine::from_toml(path, text).ok();
     for (axis, factor) in factors {
         let item = axis_item(&mut document, *axis).ok_or_else(|| no_axis(path, *axis))?;
         let table = item.as_table_like_mut();
         let table = table.ok_or_else(|| no_axis(path, *axis))?;
-        let key = "servo_factor_motor";
         let factor = libm::ceil(factor * 1000.0) / 1000.0;
-        // What follows from loops counts as well.
-        let machine = Machine::from_toml(path, text).ok();
-        let present = machine.and_then(|(machine, _)| {
+        // That which follows from loops counts as well.
+        let present = machine.as_ref().and_then(|(machine, _)| {
             let own = machine.axes.get(*axis as usize)?.as_ref()?;
             Some(own.servo_factor_motor)
         });
-        if present.is_none_or(|present| factor > present) {
-            set(table, key, factor);
+        let present = present.unwrap_or(1.0);
+        if factor <= present {
+            continue;
         }
+        if table.contains_key("position_gain_1_s") {
+            let letter = axis.letter() as char;
+            return Err(IdentifyError::new(
+                format!(
+                    "{path}: the loops of axis {letter} make a factor of {present:.3}, and its power shows {factor:.3}"
+                ),
+                format!(
+                    "take position_gain_1_s and what belongs to it out of axis {letter}, for \
+                     servo_factor_motor as measured; nothing was written"
+                ),
+            ));
+        }
+        set(table, "servo_factor_motor", factor);
     }
     raise_margin(&mut document, margin);
     finished(path, &document)
