@@ -1,6 +1,7 @@
 //! Look-ahead planners through their public interface.
 
 mod certain;
+mod chords;
 mod corners;
 mod glide;
 mod klipper;

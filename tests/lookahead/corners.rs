@@ -1,10 +1,7 @@
 //! Corner speeds of each rule, by hand.
 
 use super::{FREE, end, line, machine, plan, start};
-use gwatt::interpret::{FeedMode, Move, MoveKind};
-use gwatt::machine::{AXES, AxisSet, ChordRule, CornerAngle, CornerRule, LookAhead, PathMode};
-use gwatt::plan::Overrides;
-use gwatt::plan::lookahead::{Curve, Element, Piece, chord_count};
+use gwatt::machine::{AXES, CornerAngle, CornerRule, LookAhead};
 
 fn rule(corner: CornerRule) -> LookAhead {
     LookAhead {
@@ -28,7 +25,7 @@ fn corner(corner: CornerRule, first: [f64; 3], second: [f64; 3]) -> f64 {
     end(&pieces[0])
 }
 
-fn assert_close(value: f64, expected: f64) {
+pub(super) fn assert_close(value: f64, expected: f64) {
     assert!(
         (value - expected).abs() <= 1e-9 * expected.abs(),
         "{value}, not {expected}"
@@ -103,7 +100,25 @@ fn steps_of_speed() {
     assert_close(corner(step, [100.0, 0.0, 0.0], [0.0, 100.0, 0.0]), 4.0);
     // Back: X steps by 2·v.
     assert_close(corner(step, [100.0, 0.0, 0.0], [-100.0, 0.0, 0.0]), 5.0);
-    // Marlin counts the larger part of a reversal alone, and starts at a speed
+    // Marlin looks at the next move at its own speed: 20 straight on after 12 is a step of 8,
+    // which Y has only at half of that, but both may begin and end at 10 and 4 on their own.
+    let pace = |direction: [f64; 3], first: f64, second: f64| {
+        let machine = self::machine("marlin", 1000.0, 1000.0);
+        let elements = [
+            line(direction, first, 1000.0, FREE),
+            line(direction, second, 1000.0, FREE),
+        ];
+        end(&plan(
+            &machine,
+            rule(CornerRule::ClassicJerk { step_mm_s }),
+            &elements,
+        )[0])
+    };
+    assert_close(pace([100.0, 0.0, 0.0], 12.0, 20.0), 12.0);
+    assert_close(pace([100.0, 0.0, 0.0], 12.0, 24.0), 10.0);
+    assert_close(pace([0.0, 100.0, 0.0], 12.0, 20.0), 6.0);
+    assert_close(pace([0.0, 100.0, 0.0], 20.0, 12.0), 12.0);
+    // It counts the larger part of a reversal alone, and starts at a speed
     // that no axis exceeds.
     let jerk = CornerRule::ClassicJerk { step_mm_s };
     assert_close(corner(jerk, [100.0, 0.0, 0.0], [-100.0, 0.0, 0.0]), 10.0);
@@ -131,99 +146,4 @@ fn the_cruise_ratio_cuts_short_hills() {
     assert_close(top(rule), 5000.0_f64.sqrt());
     rule.min_cruise_ratio = 0.0;
     assert_close(top(rule), 100.0);
-}
-
-#[test]
-fn arcs_become_chords() {
-    let chords = ChordRule {
-        max_mm: f64::INFINITY,
-        min_mm: 0.0,
-        deviation_mm: 0.002,
-        per_second: 0.0,
-        per_circle: 0.0,
-        round_up: false,
-    };
-    let curve = Curve {
-        plane: [0, 1],
-        radius_mm: 10.0,
-        sweep_rad: std::f64::consts::PI,
-        rise_mm: 0.0,
-        accel_mm_s2: 1000.0,
-    };
-    // Chords of 2·√(0.002·19.998) = 0.39998 mm on 31.4159 mm.
-    assert_eq!(chord_count(&chords, &curve, 50.0), 78);
-    let coarse = ChordRule {
-        deviation_mm: f64::INFINITY,
-        max_mm: 2.0,
-        per_second: 50.0,
-        round_up: true,
-        ..chords
-    };
-    // 50 mm/s and 50 a second: chords of 1 mm; 200 mm/s: of 2 mm.
-    assert_eq!(chord_count(&coarse, &curve, 50.0), 32);
-    assert_eq!(chord_count(&coarse, &curve, 200.0), 16);
-    let round = ChordRule {
-        per_circle: 72.0,
-        ..coarse
-    };
-    assert_eq!(chord_count(&round, &curve, 200.0), 36);
-}
-
-#[test]
-fn chords_of_a_helix_end_where_it_ends() {
-    let machine = machine("grbl", 1000.0, 1000.0);
-    let mut end = [0.0; AXES];
-    (end[0], end[1], end[2]) = (-10.0, 10.0, 3.0);
-    let flat = 10.0 * std::f64::consts::FRAC_PI_2;
-    let mv = Move {
-        line: 1,
-        number: None,
-        run: 1,
-        text: 0,
-        kind: MoveKind::Arc,
-        start: [0.0; AXES],
-        end,
-        moving: AxisSet(7),
-        unknown_start: AxisSet(0),
-        assumed_start: AxisSet(0),
-        arc: Some(gwatt::interpret::Arc {
-            plane: [0, 1],
-            center: [-10.0, 0.0],
-            radius_mm: 10.0,
-            start_angle_rad: 0.0,
-            sweep_rad: std::f64::consts::FRAC_PI_2,
-        }),
-        length_mm: libm::hypot(flat, 3.0),
-        feed_mm_s: 50.0,
-        feed_mode: FeedMode::PerMinute,
-        accel_mm_s2: [1000.0; AXES],
-        path_accel_mm_s2: f64::INFINITY,
-        jerk_factor: 1.0,
-        rapid_factor: 1.0,
-        pace: 1.0,
-        dwell_s: 0.0,
-        loads: 0,
-        path_mode: PathMode::LookAhead,
-        corner: gwatt::interpret::Corner::default(),
-        stray: gwatt::interpret::Stray::NONE,
-    };
-    let element = Element::of(&machine, &mv, Overrides::default(), FREE, 0).unwrap();
-    let rule = machine.controller.planner.look_ahead.unwrap();
-    let pieces = plan(&machine, rule, &[element]);
-    assert!(pieces.len() > 30);
-    let mut at = 0.0;
-    for piece in &pieces {
-        let Piece::Along { from_mm, to_mm } = piece.piece else {
-            panic!("{piece:?}");
-        };
-        assert_eq!(from_mm, at);
-        at = to_mm;
-    }
-    assert_close(at, mv.length_mm);
-    // The chords are shorter than the arc by their sagittas only.
-    let length: f64 = pieces.iter().map(|piece| piece.profile().length_mm()).sum();
-    assert!(
-        length < mv.length_mm && length > mv.length_mm * 0.9999,
-        "{length}"
-    );
 }

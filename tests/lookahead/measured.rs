@@ -24,6 +24,7 @@ const RULE: LookAhead = LookAhead {
         per_second: 0.0,
         per_circle: 0.0,
         round_up: false,
+        safe_exit: false,
     }),
 };
 

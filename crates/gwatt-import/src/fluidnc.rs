@@ -73,7 +73,8 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
         Some(Figure::new(number, value.place.source(value.whole)))
     };
     if let Some(blocks) = figure("planner_blocks") {
-        let seen = (blocks.value - 1.0).max(1.0);
+        // One stays free, one runs, and the next is given its speed before another one comes.
+        let seen = (blocks.value - 3.0).max(1.0);
         found.look_ahead(format!("blocks = {}", shown(seen)), blocks.source);
     }
     if let Some(tolerance) = figure("arc_tolerance_mm") {

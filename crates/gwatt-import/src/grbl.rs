@@ -93,7 +93,7 @@ fn settings<'t>(job: &'t Job, log: &mut Log) -> BTreeMap<u16, Setting<'t>> {
 
 /// Whether a setting says how axes move.
 fn is_of_motion(number: u16) -> bool {
-    matches!(number, 11 | 12 | 110..=117 | 120..=127)
+    matches!(number, 11 | 12 | 398 | 110..=117 | 120..=127)
 }
 
 fn axis(
@@ -172,6 +172,14 @@ fn homing(
 
 /// `$11`, `$12`.
 fn corners(found: &mut Found, log: &mut Log, settings: &BTreeMap<u16, Setting<'_>>) {
+    // grblHAL's planner buffer: one block runs, and the next is given its speed before
+    // another one comes.
+    if let Some(setting) = settings.get(&398)
+        && let Some(value) = log.positive(&setting.place, setting.text, "a number of blocks")
+    {
+        let field = format!("blocks = {}", shown((value - 2.0).max(1.0).floor()));
+        found.look_ahead(field, setting.place.source(setting.whole));
+    }
     if let Some(setting) = settings.get(&12)
         && let Some(value) = log.positive(&setting.place, setting.text, "an arc tolerance")
     {

@@ -9,7 +9,7 @@ use super::{Folder, fields, file, imported, in_force, render};
 fn grbl() {
     let text = "< $$\n$11=0.020 (junction deviation, mm)\n$12=0.002\n$22=1\n$23=1\n$25=1500.000\n$27=2.000\n\
                 $30=24000\n$100=80.000\n$110=8000.000\n$111=7000.000\n$112=500.000\n$113=3600.000\n\
-                $120=400.000\n$121=300.000\n$122=50.000\n$123=720.000\n$130=740.000\nok\n";
+                $120=400.000\n$121=300.000\n$122=50.000\n$123=720.000\n$130=740.000\n$398=100\nok\n";
     let found = imported(text);
     assert_eq!(found.format, Format::Grbl);
     assert!(
@@ -27,6 +27,7 @@ fn grbl() {
     controller = "grbl"
     [converter]
     [look_ahead]
+    blocks = 98                  # $398=100 (line 19)
     chords = { deviation_mm = 0.002 } # $12=0.002 (line 3)
     [look_ahead.junction_deviation]
     deviation_mm = 0.02          # $11=0.020 (line 2)
@@ -68,7 +69,7 @@ fn fluidnc() {
     controller = "grbl"
     [converter]
     [look_ahead]
-    blocks = 31                  # planner_blocks: 32 (line 2)
+    blocks = 29                  # planner_blocks: 32 (line 2)
     [look_ahead.junction_deviation]
     deviation_mm = 0.015         # junction_deviation_mm: 0.015 (line 21)
     [axes.X]

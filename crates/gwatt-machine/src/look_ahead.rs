@@ -99,4 +99,7 @@ pub struct ChordRule {
     pub per_circle: f64,
     /// The number of chords is rounded up, not down.
     pub round_up: bool,
+    /// While nothing waits after a chord it may be left at the speed from which the rest
+    /// of the arc is enough to stop; otherwise at none.
+    pub safe_exit: bool,
 }

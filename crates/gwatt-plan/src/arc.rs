@@ -25,30 +25,100 @@
 use super::arc_plane::{
     LINUXCNC_NORMAL_SHARE, LINUXCNC_TANGENTIAL_SHARE, largest_parts, plane_axes, plane_share,
 };
+use super::axis_limits::lower;
 use super::drive;
 use super::overrides::Caps;
 use super::path_limits::PathLimits;
 use super::s_curve::cbrt_of_square;
 use gwatt_machine::{ArcRule, AxisKind, Machine};
 use gwatt_motion::{Arc, Move};
-use std::f64::consts::FRAC_1_SQRT_2;
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 
 /// √(1 + 3/4) − 1: all of an axis' acceleration along a helix, and √3/2 across.
 const LINUXCNC_HELIX_EXCESS: f64 = 0.322_875_655_532_295_3;
 
-/// Path speed that the axes' own speeds permit.
-pub(super) fn axis_speed(machine: &Machine, mv: &Move, arc: &Arc) -> f64 {
-    let share = plane_share(mv, arc);
-    let parts = largest_parts(machine, arc);
-    let raised = mv.rapid_factor.max(1.0);
-    let per_axis = crate::axis_limits::moving(machine, mv).map(|(axis, limit)| {
-        let part = match arc.plane.iter().position(|&plane| plane == axis) {
-            Some(i) => share * parts[i],
-            None => (mv.end[axis] - mv.start[axis]).abs() / mv.length_mm,
+/// The axes' own speeds on an arc or a helix.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AxisSpeeds {
+    /// The largest of the plane's axes, mm/s; infinite of one that stands.
+    pub plane_mm_s: [f64; 2],
+    /// Path speed that the axes across the plane permit, mm/s.
+    pub across_mm_s: f64,
+    share: f64,
+}
+
+impl AxisSpeeds {
+    pub fn of(machine: &Machine, mv: &Move, arc: &Arc) -> Self {
+        let mut speeds = Self {
+            plane_mm_s: [f64::INFINITY; 2],
+            across_mm_s: f64::INFINITY,
+            share: plane_share(mv, arc),
         };
-        limit.rapid_mm_s * raised / part
-    });
-    per_axis.fold(f64::INFINITY, f64::min)
+        let raised = mv.rapid_factor.max(1.0);
+        for (axis, limit) in crate::axis_limits::moving(machine, mv) {
+            let speed = limit.rapid_mm_s * raised;
+            match arc.plane.iter().position(|&plane| plane == axis) {
+                Some(i) => speeds.plane_mm_s[i] = speed,
+                None => {
+                    let part = (mv.end[axis] - mv.start[axis]).abs() / mv.length_mm;
+                    speeds.across_mm_s = speeds.across_mm_s.min(speed / part);
+                }
+            }
+        }
+        speeds
+    }
+
+    /// Path speed that is permitted all along the arc, of which its axes have these parts
+    /// at most.
+    fn all_along(&self, parts: [f64; 2]) -> f64 {
+        let plane = self.plane_mm_s.into_iter().zip(parts);
+        let plane = plane.map(|(speed, part)| speed / (self.share * part));
+        plane.fold(self.across_mm_s, f64::min)
+    }
+
+    /// The largest path speed anywhere on the arc: each of its chords may run as fast as
+    /// its own direction permits.
+    fn fastest(&self, arc: &Arc) -> f64 {
+        let [first, second] = self.plane_mm_s;
+        // Where both axes are at their limits.
+        let balanced = libm::atan2(second, first);
+        let ends = [0.0, arc.sweep_rad].map(|turned| {
+            let (sin, cos) = libm::sincos(arc.start_angle_rad + turned);
+            self.all_along([sin.abs(), cos.abs()])
+        });
+        let meets = [balanced, PI - balanced, balanced - PI, -balanced]
+            .into_iter()
+            .any(|heading| meets(arc, heading));
+        if meets {
+            lower(self.across_mm_s, libm::hypot(first, second) / self.share)
+        } else {
+            ends[0].max(ends[1])
+        }
+    }
+}
+
+/// Whether a path along an arc heads to an angle, from the plane's first axis, somewhere.
+fn meets(arc: &Arc, heading_rad: f64) -> bool {
+    let start = arc.start_angle_rad + FRAC_PI_2.copysign(arc.sweep_rad);
+    let turned = (heading_rad - start) * arc.sweep_rad.signum();
+    turned.rem_euclid(2.0 * PI) <= arc.sweep_rad.abs()
+}
+
+/// Path speed that the axes' own speeds permit: all along the arc, or of its fastest chord
+/// where the controller runs it as chords.
+pub(super) fn axis_speed(machine: &Machine, mv: &Move, arc: &Arc) -> f64 {
+    let speeds = AxisSpeeds::of(machine, mv, arc);
+    if runs_chords(machine) {
+        speeds.fastest(arc)
+    } else {
+        speeds.all_along(largest_parts(machine, arc))
+    }
+}
+
+/// Whether the controller runs arcs as chords.
+pub(super) fn runs_chords(machine: &Machine) -> bool {
+    let look_ahead = machine.controller.planner.look_ahead.as_ref();
+    look_ahead.is_some_and(|rules| rules.chords.is_some())
 }
 
 /// What the axes and the arc rule permit.

@@ -5,7 +5,7 @@
 //! not lowered where a short move never reaches its speed, since blending may
 //! carry the speed through.
 
-use super::arc::{axis_speed, excess};
+use super::arc::{AxisSpeeds, axis_speed, excess, runs_chords};
 use super::arc_plane::{plane_share, tangent_ranges};
 use super::axis_limits::{feed_factor, moving, rapid_factor};
 use super::lookahead::Blend;
@@ -229,6 +229,14 @@ fn along(
     }
     if let Some(arc) = &mv.arc {
         raise_plane(arc, v * plane_share(mv, arc), bound);
+        if runs_chords(machine) {
+            // Of the fastest chord only one axis may be at its limit.
+            let limits = AxisSpeeds::of(machine, mv, arc).plane_mm_s;
+            for (axis, limit) in arc.plane.into_iter().zip(limits) {
+                bound.positive[axis] = bound.positive[axis].min(limit);
+                bound.negative[axis] = bound.negative[axis].min(limit);
+            }
+        }
     }
 }
 

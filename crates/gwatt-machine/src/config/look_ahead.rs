@@ -117,6 +117,9 @@ pub(crate) struct ChordsTable {
     pub(crate) per_circle: Option<NotNegative>,
     /// Whether the number is rounded up; default false.
     pub(crate) round_up: Option<bool>,
+    /// Whether a chord, while nothing waits after it, may be left at the speed from which
+    /// the rest of the arc is enough to stop; default false.
+    pub(crate) safe_exit: Option<bool>,
 }
 
 /// The rules of a table; `None` with any mistake in it.
@@ -300,6 +303,7 @@ fn chords(table: &ChordsTable, base: Option<ChordRule>) -> ChordRule {
         per_second: 0.0,
         per_circle: 0.0,
         round_up: false,
+        safe_exit: false,
     });
     ChordRule {
         max_mm: or(table.max_mm.as_ref(), base.max_mm),
@@ -308,5 +312,6 @@ fn chords(table: &ChordsTable, base: Option<ChordRule>) -> ChordRule {
         per_second: or(table.per_second.as_ref(), base.per_second),
         per_circle: or(table.per_circle.as_ref(), base.per_circle),
         round_up: table.round_up.unwrap_or(base.round_up),
+        safe_exit: table.safe_exit.unwrap_or(base.safe_exit),
     }
 }

@@ -51,9 +51,14 @@ fn number(rule: &ChordRule, curve: &Curve, feed_mm_s: f64) -> f64 {
     }
 }
 
-/// The speed that is asked for on an arc, mm/s.
+/// The speed that is asked for on an arc, mm/s: the controller divides it up by F, whatever
+/// the axes permit.
 fn asked_mm_s<T>(arc: &Element<T>) -> f64 {
-    arc.feed_mm_s.min(arc.speed_mm_s)
+    if arc.feed_mm_s < f64::INFINITY {
+        arc.feed_mm_s
+    } else {
+        arc.speed_mm_s
+    }
 }
 
 /// What lower overrides may make of a chord whose length follows the feed.
@@ -65,6 +70,36 @@ pub(super) struct Finer {
     pub speed2: f64,
     /// Where the arc heads at both ends, which the first and the last of them come closer to.
     pub tangents: [AxisValues; 2],
+}
+
+/// From what speed the rest of an arc is enough to stop, as Marlin has it: at a speed that
+/// turning permits, with the smaller limits of the plane's axes.
+#[derive(Debug, Clone, Copy)]
+struct SafeExit {
+    speed2: f64,
+    accel_mm_s2: f64,
+    flat_mm: f64,
+}
+
+impl SafeExit {
+    fn of<T>(arc: &Element<T>, curve: &Curve) -> Self {
+        let limits = curve.plane.map(|axis| arc.axis_accel_mm_s2.get(axis));
+        let limits = limits.into_iter().flatten();
+        let accel_mm_s2 = limits.fold(f64::INFINITY, |accel, limit| accel.min(*limit));
+        let [first, second] = curve.axes_mm_s;
+        let speed = asked_mm_s(arc).min(first).min(second);
+        Self {
+            speed2: (speed * speed).min(accel_mm_s2 * curve.radius_mm),
+            accel_mm_s2,
+            flat_mm: curve.radius_mm * curve.sweep_rad.abs(),
+        }
+    }
+
+    /// The speed, squared, where this share of the arc is left.
+    fn speed2(&self, left: f64) -> f64 {
+        self.speed2
+            .min(2.0 * self.accel_mm_s2 * self.flat_mm * left)
+    }
 }
 
 /// The chords of an arc.
@@ -83,6 +118,9 @@ pub(super) struct Chords<T> {
     /// arc's piece.
     shorter: f64,
     stretch: f64,
+    /// Speed that the axes across the plane permit, mm/s.
+    across_mm_s: f64,
+    safe_exit: Option<SafeExit>,
     /// See [`Finer::speed2`]; nothing where lower overrides make the same chords.
     finer_speed2: Option<f64>,
     tangents: [AxisValues; 2],
@@ -126,6 +164,8 @@ impl<T: Copy> Chords<T> {
             step_rad,
             shorter,
             stretch,
+            across_mm_s: curve.across_mm_s * stretch,
+            safe_exit: rule.safe_exit.then(|| SafeExit::of(arc, &curve)),
             finer_speed2: finer_speed2(rule, &curve, count),
             tangents: [arc.start, arc.end],
         })
@@ -177,6 +217,13 @@ impl<T: Copy> Chords<T> {
         })
     }
 
+    /// The speed, squared, at which the one that was given last may be left while nothing
+    /// waits after it.
+    pub fn exit2(&self) -> f64 {
+        let left = f64::from(self.count - self.next) / f64::from(self.count);
+        self.safe_exit.map_or(0.0, |exit| exit.speed2(left))
+    }
+
     /// Makes `chord` the next one; gives where it begins and ends on the arc, mm.
     pub fn advance(&mut self) -> Option<[f64; 2]> {
         if self.next == self.count {
@@ -196,6 +243,10 @@ impl<T: Copy> Chords<T> {
             }
         }
         chord.accel_mm_s2 = straight_accel(chord).min(chord.path_accel_mm_s2);
+        let plane = self.curve.axes_mm_s.into_iter().zip(flat);
+        chord.speed_mm_s = plane.fold(self.across_mm_s, |speed, (limit, change)| {
+            speed.min(limit / (change * self.shorter / self.stretch).abs())
+        });
         let share = 1.0 / f64::from(self.count);
         let at = |k: f64| self.arc_mm * (k * share);
         Some([at(i), at(i + 1.0)])

@@ -7,7 +7,10 @@
 //! a circle that touches both sides and stays the distance d from the corner
 //! has the radius `R = d·s/(1 − s)`, and is run at `v² = a·R` (Jeon 2011).
 
+mod jerk;
+
 use super::rounding::{EXTRUDER, UNIT};
+use jerk::JerkJoint;
 use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
 use super::element::{Element, Joint};
@@ -25,6 +28,8 @@ pub(super) struct Before {
     pub joint: Joint,
     /// Speed that feed, axes and curvature permit, mm/s.
     pub top_mm_s: f64,
+    /// Speed that F asks for, mm/s.
+    asked_mm_s: f64,
     /// Direction at the joint, how many axes it needs, and whether X, Y and Z
     /// make a unit of it.
     end: AxisValues,
@@ -63,6 +68,18 @@ impl Before {
             ..self.clone()
         };
         own2.max(speed2(rule, &tangent, after, most2))
+    }
+
+    /// The same at any lower override, if it may be more.
+    pub fn lower_joint2<T>(&self, rule: &CornerRule, after: &After<'_, T>) -> Option<f64> {
+        let CornerRule::ClassicJerk { step_mm_s } = rule else {
+            return None;
+        };
+        if self.joint == Joint::Stop {
+            return None;
+        }
+        let span = self.span.max(after.span);
+        jerk(step_mm_s, self, after, span).lower_speed2()
     }
 
     /// Whether the element is straight, as long as its part in X, Y and Z, and runs
@@ -139,6 +156,7 @@ impl<'e, T> After<'e, T> {
         Before {
             joint: element.joint,
             top_mm_s: self.top_mm_s,
+            asked_mm_s: element.feed_mm_s,
             end: element.end,
             tangent: None,
             is_curved: element.curve.is_some(),
@@ -213,7 +231,7 @@ pub(super) fn speed2<T>(
                 corner.speed2()
             }
         }
-        CornerRule::ClassicJerk { step_mm_s } => jerk(step_mm_s, before, after, span),
+        CornerRule::ClassicJerk { step_mm_s } => jerk(step_mm_s, before, after, span).speed2(),
         CornerRule::SquareCorner {
             extruder_step_mm_s, ..
         } => square(*extruder_step_mm_s, before, after),
@@ -346,29 +364,20 @@ impl<T> Corner<'_, T> {
     }
 }
 
-/// A change of direction counts as the larger of both parts, as Marlin has it.
-fn jerk<T>(steps: &AxisValues, before: &Before, after: &After<'_, T>, span: usize) -> f64 {
-    let speed = before.top_mm_s.min(after.top_mm_s);
-    let mut factor = 1.0_f64;
-    let sides = before.end.iter().zip(&after.element.start);
-    for (step, (exit, entry)) in steps.iter().zip(sides).take(span) {
-        let (exit, entry) = (exit * speed, entry * speed);
-        let jump = if exit * entry < 0.0 {
-            exit.abs().max(entry.abs())
-        } else {
-            (exit - entry).abs()
-        };
-        if jump * factor > *step {
-            factor = step / jump;
-        }
-    }
-    let v2 = (speed * factor) * (speed * factor);
-    // Both sides could as well begin and end on their own.
-    let threshold2 = v2 * (0.99 * 0.99);
-    if after.rest2 > threshold2 && before.rest2 > threshold2 {
-        after.rest2
-    } else {
-        v2
+/// The joint under the classic jerk rule.
+fn jerk<'a, T>(
+    steps: &'a AxisValues,
+    before: &'a Before,
+    after: &After<'a, T>,
+    span: usize,
+) -> JerkJoint<'a> {
+    JerkJoint {
+        steps: steps.get(..span).unwrap_or(steps),
+        exit: &before.end,
+        entry: &after.element.start,
+        tops: [before.top_mm_s, after.top_mm_s],
+        asked: [before.asked_mm_s, after.element.feed_mm_s],
+        rests2: [before.rest2, after.rest2],
     }
 }
 

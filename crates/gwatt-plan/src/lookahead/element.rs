@@ -45,6 +45,10 @@ pub struct Curve {
     /// Acceleration along the path at which the plane and the axes across it stay
     /// within the smaller limit of the plane's axes and their own, mm/s².
     pub accel_mm_s2: f64,
+    /// The largest speeds of the plane's axes, mm/s.
+    pub axes_mm_s: [f64; 2],
+    /// Speed along the path that the axes across the plane permit, mm/s.
+    pub across_mm_s: f64,
 }
 
 /// A path element.
@@ -250,6 +254,7 @@ impl<T> Element<T> {
                 }
             }
         }
+        let speeds = arc::AxisSpeeds::of(machine, mv, of);
         self.speed_mm_s = arc::axis_speed(machine, mv, of);
         self.curve_speed_mm_s = arc::limits(machine, mv, of, &Caps::default()).speed_mm_s;
         self.curve = Some(Curve {
@@ -258,6 +263,8 @@ impl<T> Element<T> {
             sweep_rad: of.sweep_rad,
             rise_mm: self.length_mm * (1.0 - share * share).max(0.0).sqrt(),
             accel_mm_s2: self.accel_along(of.plane),
+            axes_mm_s: speeds.plane_mm_s,
+            across_mm_s: speeds.across_mm_s,
         });
     }
 

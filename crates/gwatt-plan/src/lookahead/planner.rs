@@ -42,6 +42,8 @@ pub struct PathPlanner<T> {
     pub(super) look_ahead: LookAhead,
     pub(super) rule: Rule<T>,
     pub(super) window: Window<Load<T>>,
+    /// Lower overrides count as well.
+    lowers: bool,
 }
 
 impl<T: Copy> PathPlanner<T> {
@@ -76,6 +78,7 @@ impl<T: Copy> PathPlanner<T> {
             look_ahead,
             rule,
             window,
+            lowers: machine.limits.override_at.is_none(),
         }
     }
 
@@ -123,14 +126,14 @@ impl<T: Copy> PathPlanner<T> {
         }
         let rule = self.look_ahead.chords.as_ref();
         let Some(mut chords) = rule.and_then(|rule| Chords::of(rule, element)) else {
-            self.push_corner(element, [0.0, element.length_mm], None);
+            self.push_corner(element, [0.0, element.length_mm], 0.0, None);
             return None;
         };
         let (mut ramp2, mut last) = (0.0, None);
         while let Some(at) = chords.advance() {
             ramp2 += 2.0 * chords.chord.accel_mm_s2 * chords.chord.length_mm;
             let finer = chords.finer();
-            self.push_corner(&chords.chord, at, finer);
+            self.push_corner(&chords.chord, at, chords.exit2(), finer);
             last = finer;
         }
         if let (Some(finer), Rule::Corner(Some(before))) = (last, &mut self.rule) {
@@ -189,9 +192,16 @@ impl<T: Copy> PathPlanner<T> {
         (after, node)
     }
 
-    /// `finer`: of a chord that lower overrides may make shorter.
-    fn push_corner(&mut self, element: &Element<T>, at: [f64; 2], finer: Option<Finer>) {
+    /// `exit2`: see [`Node::exit2`]; `finer`: of a chord that lower overrides may make shorter.
+    fn push_corner(
+        &mut self,
+        element: &Element<T>,
+        at: [f64; 2],
+        exit2: f64,
+        finer: Option<Finer>,
+    ) {
         let (after, mut node) = self.node(element, at);
+        node.exit2 = exit2;
         let Rule::Corner(before) = &mut self.rule else {
             return;
         };
@@ -204,6 +214,12 @@ impl<T: Copy> PathPlanner<T> {
             let tangent = Element { start, ..*element };
             node.entry2 = node.entry2.max(joint2(&After::new(rule, &tangent)));
         }
+        let lower2 = before.as_ref().filter(|_| self.lowers);
+        let lower2 = lower2.and_then(|before| before.lower_joint2(rule, &after));
+        if let Some(lower2) = lower2.filter(|lower2| *lower2 > node.entry2) {
+            // Where it is not passed faster, the joint is still slower than that.
+            (node.entry2, node.payload.certain) = (lower2, false);
+        }
         if node.entry2 == 0.0 {
             self.window.stop();
         }
@@ -213,7 +229,9 @@ impl<T: Copy> PathPlanner<T> {
             node.payload.slack.chord2 = finer.speed2;
             // Shorter ones turn by less, and are passed faster: that is not followed.
             let asked2 = after.top_mm_s * after.top_mm_s;
-            node.payload.certain = at[0] <= 0.0 || node.entry2 >= finer.speed2.min(asked2);
+            // Nor is what other directions permit where their axes are at their limits.
+            let turns = at[0] <= 0.0 || node.entry2 >= finer.speed2.min(asked2);
+            node.payload.certain &= turns && element.speed_mm_s >= element.feed_mm_s;
         }
         self.window.push(node);
         *before = Some(after.before());

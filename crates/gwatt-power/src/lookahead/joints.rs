@@ -11,11 +11,6 @@ use gwatt_motion::Move;
 use gwatt_plan::lookahead::{Piece, Planned};
 use std::ops::RangeInclusive;
 
-/// Chords that last for less than this share of the response time at the largest
-/// overrides: at lower ones, where they last for all of it, what two steps ask for in that
-/// time, 2·m·v³/r, is less than what the curve asks for at the largest, since 2·x³ < 1.
-const SHORT: f64 = 0.79;
-
 /// Servo cycles over which `LinuxCNC` spreads a step: its commands pass a cubic spline.
 const SPLINE_CYCLES: f64 = 2.0;
 
@@ -85,11 +80,7 @@ impl Ahead {
         }
         let mut beyond = (self.surges.as_ref()).map_or(Beyond::NONE, |it| it.beyond(planned));
         let profile = planned.profile();
-        // The power of an arc is that of the mean over its chords, where these are
-        // shorter than the drives' response, at lower overrides too if those count.
-        let chord = is_arc && from_mm > 0.0;
-        let least = if self.surges.is_some() { SHORT } else { 1.0 };
-        let mut joint = !chord || planned.duration_s() > least * steps.response_s();
+        let mut joint = true;
         for phase in &profile.phases {
             let mut phase = *phase;
             phase.position_mm += from_mm;

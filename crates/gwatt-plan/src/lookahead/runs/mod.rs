@@ -165,7 +165,7 @@ impl<P> Runs<P> {
         while self.unseen.len() > blocks {
             // A blend enters the queue together with the line after it.
             let mut seen = 0;
-            let mut length = 0.0;
+            let (mut length, mut exit2) = (0.0, 0.0);
             let mut steepness = Steepness::NONE;
             for node in &self.unseen {
                 if seen == blocks && node.block {
@@ -175,6 +175,7 @@ impl<P> Runs<P> {
                 seen += usize::from(node.block);
                 length += node.length;
                 steepness = steepness.lowest(node.steepness());
+                exit2 = node.exit2;
             }
             if seen <= blocks {
                 return;
@@ -182,7 +183,7 @@ impl<P> Runs<P> {
             let Some(mut node) = self.unseen.pop_front() else {
                 return;
             };
-            let stops = steepness.farthest(0.0, length);
+            let stops = steepness.farthest(f64::sqrt(exit2), length);
             node.entry2 = lower(node.entry2, stops * stops);
             self.take(node);
         }

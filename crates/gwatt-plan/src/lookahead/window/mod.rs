@@ -18,7 +18,8 @@
 //! stopping distance is; at once where it fits into the last element.
 //!
 //! A controller that sees `n` blocks ahead keeps able to stop within them:
-//! `e[i] ≤ Σ 2·a·L` over the next n, which sums in O(1).
+//! `e[i] ≤ Σ 2·a·L` over the next n, which sums in O(1); and the square of the speed at
+//! which it may leave the last of them, where it knows that more of an arc comes after.
 
 mod glide;
 #[cfg(test)]
@@ -334,7 +335,7 @@ impl<P: Copy> Window<P> {
             return f64::INFINITY;
         };
         match self.nodes.get(i + blocks) {
-            Some(node) if node.run == first.run => node.sum - first.sum + node.ramp2(),
+            Some(node) if node.run == first.run => node.sum - first.sum + node.ramp2() + node.exit2,
             _ => f64::INFINITY,
         }
     }
