@@ -69,6 +69,7 @@ fn moves() -> Vec<Move> {
             arc: None,
             length_mm: travel.sum::<f64>().sqrt(),
             feed_mm_s: 80.0,
+            feed_excess: 1.0,
             feed_mode: FeedMode::PerMinute,
             accel_mm_s2: [2000.0; AXES],
             path_accel_mm_s2: f64::INFINITY,

@@ -43,6 +43,7 @@ fn feed() -> Move {
         arc: None,
         length_mm: f64::sqrt(9.0 + 4.0 + 2.25),
         feed_mm_s: 100.0,
+        feed_excess: 1.0,
         feed_mode: FeedMode::PerMinute,
         accel_mm_s2: [6000.0; 10],
         path_accel_mm_s2: f64::INFINITY,

@@ -175,6 +175,7 @@ pub(crate) fn straight(machine: &Machine, delta: &[f64], feed: f64) -> Move {
         arc: None,
         length_mm: delta.iter().map(|d| d * d).sum::<f64>().sqrt(),
         feed_mm_s: feed,
+        feed_excess: 1.0,
         feed_mode: FeedMode::PerMinute,
         accel_mm_s2: std::array::from_fn(|i| machine.axes[i].map_or(0.0, |a| a.accel_mm_s2)),
         path_accel_mm_s2: f64::INFINITY,

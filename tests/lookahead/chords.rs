@@ -46,6 +46,7 @@ fn quarter(rise_mm: f64, feed_mm_s: f64, accel_mm_s2: f64) -> Move {
         }),
         length_mm: libm::hypot(10.0 * FRAC_PI_2, rise_mm),
         feed_mm_s,
+        feed_excess: 1.0,
         feed_mode: FeedMode::PerMinute,
         accel_mm_s2: [accel_mm_s2; AXES],
         path_accel_mm_s2: f64::INFINITY,

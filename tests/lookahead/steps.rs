@@ -143,16 +143,17 @@ fn circle(degrees: f64) -> String {
     program
 }
 
-/// A polyline is a curve to the drives: 89.3 W as an arc.
+/// A polyline is a curve to the drives, and an arc the polyline that the firmware makes of it:
+/// 89.3 W as a curve, and 10 ms take in six of its joints in place of 5.01.
 #[test]
 fn a_circle_of_chords_is_a_circle() {
     let arc = "G21\nG90\nG92 X0 Y100\nG1 X100 Y100 F30000\nG3 X100 Y100 I0 J30\n";
     let [arc_w, arc_regen_w, arc_j] = totals(&printer(), arc);
-    assert!((arc_w - 89.3).abs() < 0.05, "{arc_w}");
+    assert!((arc_w - 99.3).abs() < 0.05, "{arc_w}");
     // Speed rises and falls within shorter chords.
     for degrees in [2.0, 3.0] {
         let [chords_w, regen_w, chords_j] = totals(&printer(), &circle(degrees));
-        assert!((1.0..1.17).contains(&(chords_w / arc_w)), "{chords_w}");
+        assert!((1.0..1.05).contains(&(chords_w / arc_w)), "{chords_w}");
         // Means over the drives' response are below an arc's shortest peaks.
         assert!((0.88..1.6).contains(&(regen_w / arc_regen_w)), "{regen_w}");
         // What brakes is not taken off the friction.

@@ -192,7 +192,7 @@ fn marlin_configuration() {
     accel_mm_s2 = { print = 500, travel = 1000 } # DEFAULT_ACCELERATION 500 (line 4), DEFAULT_TRAVEL_ACCELERATION 1000 (line 5)
     shortest_at_feed_s = 0       # SLOWDOWN is off
     [look_ahead]
-    blocks = 15                  # BLOCK_BUFFER_SIZE 16 (line 20), the highest
+    blocks = 12                  # BLOCK_BUFFER_SIZE 16 (line 20), the highest
     chords = { per_circle = 72 } # MIN_CIRCLE_SEGMENTS 72 (line 24)
     [look_ahead.junction_deviation]
     deviation_mm = 0.08          # JUNCTION_DEVIATION_MM 0.08 (line 10)

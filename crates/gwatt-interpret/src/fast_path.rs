@@ -89,6 +89,7 @@ impl Control<'_> {
             arc: None,
             length_mm: way.0,
             feed_mm_s,
+            feed_excess: 1.0,
             feed_mode: FeedMode::PerMinute,
             accel_mm_s2: *self.knobs.accel(kind),
             path_accel_mm_s2: self.path_accel(*moving),

@@ -113,6 +113,7 @@ impl Control<'_> {
             arc: None,
             length_mm: 0.0,
             feed_mm_s: f64::INFINITY,
+            feed_excess: 1.0,
             feed_mode: self.modal.feed_mode,
             accel_mm_s2: self.knobs.feed_accel_mm_s2,
             path_accel_mm_s2: f64::INFINITY,
@@ -275,7 +276,7 @@ impl Control<'_> {
         let Some(mut feed_mm_s) = self.speed_of(run, &way, given_mm_s, (length_mm, linear)) else {
             return;
         };
-        let mut rapid_factor = self.knobs.rapid_factor;
+        let (mut rapid_factor, mut feed_excess) = (self.knobs.rapid_factor, 1.0);
         // Threads follow the spindle.
         if self.printer.adjusts && !matches!(kind, MoveKind::Thread | MoveKind::Tap) {
             let course = Course {
@@ -288,10 +289,14 @@ impl Control<'_> {
                 },
                 unknown: !unknown_start.is_empty(),
             };
-            feed_mm_s = match given_mm_s {
-                None => self.printer_feed(run, &course, feed_mm_s),
-                Some(_) => self.capped(&course, feed_mm_s),
-            };
+            if given_mm_s.is_none() {
+                feed_mm_s = self.printer_feed(run, &course, feed_mm_s);
+            }
+            let capped_mm_s = self.capped(&course, feed_mm_s);
+            if capped_mm_s < feed_mm_s && feed_mm_s.is_finite() {
+                feed_excess = feed_mm_s / capped_mm_s;
+            }
+            feed_mm_s = capped_mm_s;
             rapid_factor *= self.speed_factor(&course, kind == MoveKind::Rapid);
         }
         let path_accel_mm_s2 = self.path_accel(AxisSet(moving.0 | unknown_start.0));
@@ -318,6 +323,7 @@ impl Control<'_> {
             arc,
             length_mm,
             feed_mm_s,
+            feed_excess,
             feed_mode: self.modal.feed_mode,
             accel_mm_s2,
             path_accel_mm_s2,

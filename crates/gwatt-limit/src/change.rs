@@ -205,6 +205,7 @@ impl Change {
         }
         if let Some(feed) = self.feed {
             changed.feed_mm_s = feed_speed(machine, mv, permit, feed);
+            changed.feed_excess = 1.0;
         }
         changed.corner = self.corner(machine, mv);
         if let Some((knob, percent)) = self.rapid_percent {
@@ -269,7 +270,12 @@ fn under_cap(
         && let Some(knob) = machine.controller.knobs.get(knob)
     {
         let speed_mm_s = capped_mm_s(machine, &mv, knob, &values, permit);
-        mv.feed_mm_s = mv.feed_mm_s.min(speed_mm_s);
+        if speed_mm_s < mv.feed_mm_s {
+            if mv.feed_mm_s.is_finite() {
+                mv.feed_excess *= mv.feed_mm_s / speed_mm_s;
+            }
+            mv.feed_mm_s = speed_mm_s;
+        }
     }
     mv
 }

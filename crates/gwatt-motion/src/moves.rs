@@ -123,9 +123,13 @@ pub struct Move {
     /// Path length in mm, or in degrees where only rotary axes move: the length
     /// that F speaks for. Of a rapid likewise. 0 for a dwell.
     pub length_mm: f64,
-    /// Path speed that F asks for in mm/s (or degrees/s), at 100 % override;
-    /// infinite for rapids.
+    /// Path speed that F asks for in mm/s (or degrees/s), at 100 % override, as far as
+    /// the program's own limits permit it; infinite for rapids.
     pub feed_mm_s: f64,
+    /// By what factor F asks for more than `feed_mm_s`, which the program's limits hold
+    /// back (M203, Klipper's VELOCITY): so far an override may fall before the move is
+    /// slower; 1 without such limits.
+    pub feed_excess: f64,
     /// How F was meant.
     pub feed_mode: FeedMode,
     /// Acceleration limits of the axes in force, after knobs.

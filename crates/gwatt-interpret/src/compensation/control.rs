@@ -172,7 +172,7 @@ impl Control<'_> {
             && let Some(speed_mm_s) =
                 self.feed_speed(run, &mv.end, mv.arc.as_ref(), mv.length_mm, linear)
         {
-            mv.feed_mm_s = speed_mm_s;
+            (mv.feed_mm_s, mv.feed_excess) = (speed_mm_s, 1.0);
         }
         Ok(())
     }

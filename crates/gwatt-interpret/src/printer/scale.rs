@@ -9,7 +9,7 @@ use gwatt_machine::{AxisSet, AxisValues};
 const XY: u16 = 0b11;
 
 impl Control<'_> {
-    /// The feed of a move, mm/s, of which F asks for `feed_mm_s`.
+    /// The feed of a move before the program's limits, mm/s, of which F asks for `feed_mm_s`.
     pub(crate) fn printer_feed(
         &self,
         run: &mut Run<'_, '_>,
@@ -17,13 +17,12 @@ impl Control<'_> {
         feed_mm_s: f64,
     ) -> f64 {
         let state = &self.printer;
-        let mut feed = feed_mm_s * state.feed_factor;
+        let feed = feed_mm_s * state.feed_factor;
         if state.feed_factor != 1.0 {
             run.facts.fixed = Some("M220 scales its feed");
         }
         let extrudes = course.commanded.contains(EXTRUDER);
-        feed = feed.max(state.least_mm_s[usize::from(!extrudes)]);
-        self.capped(course, feed)
+        feed.max(state.least_mm_s[usize::from(!extrudes)])
     }
 
     /// A speed along the path, mm/s, under the limits that the program has set.

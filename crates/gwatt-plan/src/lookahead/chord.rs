@@ -66,6 +66,8 @@ fn asked_mm_s<T>(arc: &Element<T>) -> f64 {
 pub(super) struct Finer {
     /// The largest acceleration along shorter chords in its place, mm/s².
     pub accel_mm_s2: f64,
+    /// The largest speed along them that the axes permit, mm/s.
+    pub axes_mm_s: f64,
     /// The largest speed, squared, at which they may be run.
     pub speed2: f64,
     /// Where the arc heads at both ends, which the first and the last of them come closer to.
@@ -192,13 +194,15 @@ impl<T: Copy> Chords<T> {
             [x * cos - y * sin, x * sin + y * cos]
         });
         let turns = (ends[1] - ends[0]).abs() > std::f64::consts::FRAC_PI_2;
-        let mut limit2 = 0.0;
+        let (mut limit2, mut axes_mm_s) = (0.0, self.across_mm_s);
         for (index, axis) in self.curve.plane.into_iter().enumerate() {
             let [a, b] = parts.map(|part| part[index]);
             let crosses = turns || a * b <= 0.0;
             let part = if crosses { 0.0 } else { a.abs().min(b.abs()) };
+            let part = part * self.shorter / self.stretch;
+            axes_mm_s = axes_mm_s.min(self.curve.axes_mm_s[index] / part);
             if let Some(least) = least.get_mut(axis) {
-                *least = part * self.shorter / self.stretch;
+                *least = part;
             }
             let limit = chord.axis_accel_mm_s2.get(axis).copied();
             let limit = limit.unwrap_or(f64::INFINITY);
@@ -212,6 +216,7 @@ impl<T: Copy> Chords<T> {
         });
         Some(Finer {
             accel_mm_s2: accel.min(chord.path_accel_mm_s2),
+            axes_mm_s,
             speed2,
             tangents: self.tangents,
         })

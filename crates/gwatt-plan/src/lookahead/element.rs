@@ -158,7 +158,10 @@ impl<T> Element<T> {
         self.length_mm = mv.length_mm;
         self.feed_mm_s = match mv.kind {
             MoveKind::Rapid => f64::INFINITY,
-            kind => mv.feed_mm_s * crate::axis_limits::feed_factor(kind, overrides),
+            kind => {
+                let factor = crate::axis_limits::feed_factor(kind, overrides);
+                mv.feed_mm_s * mv.feed_excess * factor
+            }
         };
         self.pace = mv.pace;
         self.drive_accel_mm_s2 = f64::INFINITY;
@@ -195,6 +198,13 @@ impl<T> Element<T> {
         self.jerk_factor = mv.jerk_factor;
         if let Some(arc) = &mv.arc {
             self.bend(machine, mv, arc);
+        }
+        if mv.feed_excess > 1.0 {
+            // What holds the feed back does so at any override.
+            self.speed_mm_s = lower(self.speed_mm_s, mv.feed_mm_s);
+            if let Some(curve) = &mut self.curve {
+                curve.across_mm_s = lower(curve.across_mm_s, mv.feed_mm_s);
+            }
         }
         if !machine.force_curves.is_empty() {
             self.drive(machine, mv);

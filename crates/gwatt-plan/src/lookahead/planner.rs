@@ -132,7 +132,10 @@ impl<T: Copy> PathPlanner<T> {
         let (mut ramp2, mut last) = (0.0, None);
         while let Some(at) = chords.advance() {
             ramp2 += 2.0 * chords.chord.accel_mm_s2 * chords.chord.length_mm;
-            let finer = chords.finer();
+            let finer = chords.finer().filter(|_| self.lowers);
+            if let Some(finer) = &finer {
+                chords.chord.speed_mm_s = finer.axes_mm_s;
+            }
             self.push_corner(&chords.chord, at, chords.exit2(), finer);
             last = finer;
         }
@@ -229,9 +232,7 @@ impl<T: Copy> PathPlanner<T> {
             node.payload.slack.chord2 = finer.speed2;
             // Shorter ones turn by less, and are passed faster: that is not followed.
             let asked2 = after.top_mm_s * after.top_mm_s;
-            // Nor is what other directions permit where their axes are at their limits.
-            let turns = at[0] <= 0.0 || node.entry2 >= finer.speed2.min(asked2);
-            node.payload.certain &= turns && element.speed_mm_s >= element.feed_mm_s;
+            node.payload.certain &= at[0] <= 0.0 || node.entry2 >= finer.speed2.min(asked2);
         }
         self.window.push(node);
         *before = Some(after.before());
