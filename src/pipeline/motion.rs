@@ -92,7 +92,8 @@ pub fn motion<R: Read + Seek + Send>(
         machine,
         overrides,
         planner: rules
-            .map(|rules| PathPlanner::new(machine, rules).expecting(largest.feed / overrides.feed)),
+            .map(|rules| PathPlanner::new(machine, rules).expecting(largest.feed / overrides.feed))
+            .map(PathPlanner::at_one_override),
         switched: Switched::default(),
         open: VecDeque::new(),
         first: 0,

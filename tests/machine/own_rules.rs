@@ -27,7 +27,7 @@ fn what_is_given_takes_its_place() {
         "[look_ahead]\nblocks = 31\nchords = { max_mm = 0.5 }\n[look_ahead.junction_deviation]\ndeviation_mm = 0.05",
     ));
     let (before, after) = (rules(&plain), rules(&own));
-    assert_eq!((before.blocks, after.blocks), (Some(15), Some(31)));
+    assert_eq!((before.blocks, after.blocks), (Some(12), Some(31)));
     let [before, after] = [before.chords.unwrap(), after.chords.unwrap()];
     assert_eq!((after.max_mm, after.per_circle), (0.5, before.per_circle));
     let expected = CornerRule::JunctionDeviation {

@@ -72,14 +72,30 @@ impl Before {
 
     /// The same at any lower override, if it may be more.
     pub fn lower_joint2<T>(&self, rule: &CornerRule, after: &After<'_, T>) -> Option<f64> {
+        self.jerk_joint(rule, after)?.lower_speed2()
+    }
+
+    /// The squared speed at which the element after the joint begins where that is faster
+    /// than this one ends.
+    pub fn begins2<T>(&self, rule: &CornerRule, after: &After<'_, T>) -> Option<f64> {
+        self.jerk_joint(rule, after)?.begins2()
+    }
+
+    /// The same at this override and at any lower one.
+    pub fn lower_begins2<T>(&self, rule: &CornerRule, after: &After<'_, T>) -> Option<f64> {
+        self.jerk_joint(rule, after)?.lower_begins2()
+    }
+
+    fn jerk_joint<'a, T>(
+        &'a self,
+        rule: &'a CornerRule,
+        after: &After<'a, T>,
+    ) -> Option<JerkJoint<'a>> {
         let CornerRule::ClassicJerk { step_mm_s } = rule else {
             return None;
         };
-        if self.joint == Joint::Stop {
-            return None;
-        }
         let span = self.span.max(after.span);
-        jerk(step_mm_s, self, after, span).lower_speed2()
+        (self.joint != Joint::Stop).then(|| jerk(step_mm_s, self, after, span))
     }
 
     /// Whether the element is straight, as long as its part in X, Y and Z, and runs

@@ -30,6 +30,8 @@ pub(super) struct Node<P> {
     pub entry2: f64,
     /// Squared speed at which it begins where what is before it ends at rest.
     pub step2: f64,
+    /// Squared speed at which it begins though what is before it is slower; mostly 0.
+    pub begins2: f64,
     /// Squared speed at which it may be left while nothing waits after it.
     pub exit2: f64,
     /// False for a blend, which enters the controller's queue together with
@@ -65,6 +67,7 @@ impl<P> Node<P> {
             smooth_accel: accel,
             entry2,
             step2: 0.0,
+            begins2: 0.0,
             exit2: 0.0,
             block: true,
             overruns: false,

@@ -92,6 +92,13 @@ impl<T: Copy> PathPlanner<T> {
         self
     }
 
+    /// The same where no lower override counts.
+    #[must_use]
+    pub fn at_one_override(mut self) -> Self {
+        self.lowers = false;
+        self
+    }
+
     /// Whether an arc before a stop that words cause, or at the end, accelerates
     /// less than between others, in exact stop too.
     #[must_use]
@@ -222,6 +229,11 @@ impl<T: Copy> PathPlanner<T> {
         if let Some(lower2) = lower2.filter(|lower2| *lower2 > node.entry2) {
             // Where it is not passed faster, the joint is still slower than that.
             (node.entry2, node.payload.certain) = (lower2, false);
+        }
+        if let Some(before) = before.as_ref().filter(|_| node.entry2 > 0.0) {
+            node.begins2 = before.begins2(rule, &after).unwrap_or(0.0);
+            let lower2 = before.lower_begins2(rule, &after);
+            node.payload.slack.begins2 = lower2.filter(|_| self.lowers).unwrap_or(0.0);
         }
         if node.entry2 == 0.0 {
             self.window.stop();

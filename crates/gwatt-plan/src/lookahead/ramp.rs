@@ -17,6 +17,9 @@ fn differ(v: f64, other: f64) -> bool {
 pub struct Slack {
     /// The largest speed, squared, at which the joint before a piece may be passed.
     pub joint2: f64,
+    /// The largest speed, squared, at which it may begin though what is before it is slower;
+    /// 0: at none.
+    pub begins2: f64,
     /// The largest acceleration along it, mm/s², as other chords may have it.
     pub accel_mm_s2: f64,
     /// The largest speed, squared, at which there are such chords.

@@ -35,6 +35,9 @@ impl Ahead {
     #[inline]
     pub(super) fn follow(&mut self, model: &PowerModel, planned: &Planned<u64>) {
         self.follow_piece(model, planned);
+        if planned.slack.begins2 > 0.0 && self.surges.is_some() {
+            self.follow_own_start(model, planned);
+        }
         let moves = moves_of(planned);
         let in_doubt = |number| self.open.get(number).is_some_and(|own| own.in_doubt);
         if self.reach2.is_some() || moves.clone().any(in_doubt) {
@@ -89,6 +92,25 @@ impl Ahead {
             });
             (joint, beyond.joint) = (false, 1.0);
         }
+    }
+
+    /// A piece that begins at a speed of its own: at the lowest override what is before it
+    /// has none. With the speed before, `v` of which it is a share, and `w` of the piece a mean
+    /// asks for no more than one of both ends, as `(v·w)² ≤ v²·w²` over the masses.
+    #[cold]
+    fn follow_own_start(&mut self, model: &PowerModel, planned: &Planned<u64>) {
+        let Some(own) = self.open.get(planned.tag) else {
+            return;
+        };
+        let from_mm = match planned.piece {
+            Piece::Along { from_mm, .. } => from_mm,
+            Piece::Joined { .. } | Piece::Blend(_) => 0.0,
+        };
+        let direction = Heading::of_piece(&own.mv, &planned.piece).at(from_mm);
+        let mut steps = self.steps.at_rest();
+        let speeds = [planned.slack.begins2.sqrt(); 2];
+        let span = Span::straight(steps.response_s(), &direction, speeds, true);
+        take(&mut steps, &mut self.open, model, moves_of(planned), &span);
     }
 
     /// The last piece that was followed may be sped up or braked at lower overrides:

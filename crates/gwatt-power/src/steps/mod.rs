@@ -185,11 +185,17 @@ impl Steps {
     /// The motion begins at rest, and what was before is not known.
     pub fn begin(&mut self) {
         if !self.spans.is_empty() {
-            let mut axes = AxisSet::default();
-            self.axes.iter().for_each(|axis| axes.insert(*axis));
-            let turns = self.turns;
-            *self = Self::new(axes, self.response_s, self.lower);
-            self.turns = turns;
+            *self = self.at_rest();
+        }
+    }
+
+    /// The same axes at rest.
+    pub fn at_rest(&self) -> Self {
+        let mut axes = AxisSet::default();
+        self.axes.iter().for_each(|axis| axes.insert(*axis));
+        Self {
+            turns: self.turns,
+            ..Self::new(axes, self.response_s, self.lower)
         }
     }
 

@@ -13,6 +13,8 @@ use gwatt_machine::AxisValues;
 
 /// Sides that differ less begin on their own.
 const THRESHOLD: f64 = 0.99;
+/// By what share two speeds may differ by rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// A joint; of each pair the side before comes first.
 #[derive(Debug)]
@@ -31,6 +33,12 @@ pub(super) struct JerkJoint<'a> {
 impl JerkJoint<'_> {
     /// The largest squared speed at which it is passed.
     pub fn speed2(&self) -> f64 {
+        let v2 = self.stepped2();
+        self.or_rest(v2, v2)
+    }
+
+    /// The squared speed at which no axis makes too large a step.
+    fn stepped2(&self) -> f64 {
         let [before, after] = self.tops;
         let speed = before.min(after);
         let mut factor = 1.0_f64;
@@ -40,11 +48,26 @@ impl JerkJoint<'_> {
                 factor = step / jump;
             }
         }
-        let v2 = (speed * factor) * (speed * factor);
-        self.or_rest(v2, v2)
+        (speed * factor) * (speed * factor)
     }
 
-    /// The same at this override and at all lower ones, if that is more.
+    /// The squared speed at which the next side begins on its own, though the one before is
+    /// slower than that: no step is too large for it.
+    pub fn begins2(&self) -> Option<f64> {
+        let [before, after] = self.rests2;
+        let threshold2 = THRESHOLD * THRESHOLD * self.stepped2();
+        let top2 = self.tops[0] * self.tops[0];
+        (after > top2 && after > threshold2 && before > threshold2).then_some(after)
+    }
+
+    /// The same at this override and at any lower one: where both sides are slower than a
+    /// step, each begins at its own speed.
+    pub fn lower_begins2(&self) -> Option<f64> {
+        let rises = |[before, after]: [f64; 2]| after > before * (1.0 + ROUNDING);
+        (rises(self.asked) || rises(self.tops)).then_some(self.rests2[1])
+    }
+
+    /// [`Self::speed2`] at this override and at all lower ones, if that is more.
     pub fn lower_speed2(&self) -> Option<f64> {
         let [least, most] = self.ratios()?;
         let (mut slow, mut fast) = (f64::INFINITY, f64::INFINITY);

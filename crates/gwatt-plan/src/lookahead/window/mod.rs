@@ -106,7 +106,11 @@ impl<P: Copy> Window<P> {
         if let Some(last) = self.nodes.back() {
             // What cannot be reached from before is no limit that matters.
             let ramp2 = last.ramp2();
-            node.entry2 = lower(node.entry2, higher(last.entry2, last.step2) + ramp2);
+            let reach = higher(higher(last.entry2, last.step2), last.begins2) + ramp2;
+            node.entry2 = lower(node.entry2, reach);
+            if ramp2 < last.top2 {
+                node.begins2 = lower(node.begins2, reach);
+            }
             node.sum = last.sum + ramp2;
             node.run = last.run;
             if self.smooth {
@@ -126,7 +130,7 @@ impl<P: Copy> Window<P> {
             node.smooth_accel = node.accel;
         }
         let entry2 = node.entry2;
-        let stops = node.ramp2() >= entry2;
+        let stops = node.ramp2() >= higher(entry2, node.begins2);
         self.nodes.push_back(node);
         if stops && !self.smooth {
             self.release_before_last();
@@ -297,6 +301,7 @@ impl<P: Copy> Window<P> {
             self.now2
         };
         let (ramp2, mut top2) = (node.ramp2(), lower(node.hill2, node.top2));
+        let start2 = higher(start2, lower(node.begins2, end2 + ramp2));
         let end2 = lower(end2, start2 + ramp2);
         let most2 = if node.overruns {
             lower(top2, seen2)
