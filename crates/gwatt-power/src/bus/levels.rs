@@ -7,6 +7,9 @@ use crate::spindle_trace::{SpindleSpan, SpindleTrace};
 
 /// Steps of a run are no higher than this share of its largest power.
 const STEP: f64 = 0.002;
+/// Nor need they be lower than this share of what the converter supplies: a program may
+/// change the speed by a little in each block (a laser's S).
+const LEAST_STEP: f64 = 0.000_2;
 /// Depth of halving.
 const DEPTH: u32 = 12;
 /// How well the time of a move is known that is planned with others, where the knobs
@@ -65,6 +68,11 @@ impl SpindleBus<'_> {
                     return Steps::Steady(level(duration_s, whole.largest_w, whole.least_w));
                 }
                 let most_w = whole.largest_w.abs().max(whole.least_w.abs());
+                let limit_w = self.model.limit_w(self.spindle.converter);
+                let mut step_w = STEP * most_w;
+                if limit_w.is_finite() {
+                    step_w = step_w.max(LEAST_STEP * limit_w);
+                }
                 let mut levels = Vec::new();
                 let mut from_s = *from_s;
                 let spread_s = if ahead { SPREAD_S } else { 0.0 };
@@ -72,7 +80,7 @@ impl SpindleBus<'_> {
                     steps(
                         trace,
                         [from_s, end_s],
-                        (STEP * most_w, spread_s),
+                        (step_w, spread_s),
                         DEPTH,
                         &mut |span, part| {
                             levels.push(level(span, part.largest_w, part.least_w));
