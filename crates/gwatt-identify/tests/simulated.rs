@@ -288,7 +288,7 @@ pub(crate) fn plant(random: &mut Random) -> TransferFunction {
     }
 }
 
-/// A drive that swings, and nothing that hangs on it.
+/// A drive that swings, and nothing else.
 pub(crate) fn stiff(random: &mut Random) -> TransferFunction {
     TransferFunction {
         gain: 1.0 / random.uniform(0.005, 0.1),
