@@ -274,13 +274,7 @@ impl Descending for Task<'_> {
     fn is_enough(&self, round: usize, before: &Place, after: &Place) -> bool {
         let (least, rows) = (after.least, after.normal.rows as f64);
         let gained = before.least - least;
-        // On the way what no criterion sees is not worth a step.
-        let seen = match self.effort.steps {
-            STEPS_MAX => ROUNDING,
-            _ => self.floor,
-        };
-        let noise = least.max(seen * self.power) / rows;
-        if gained <= self.enough * noise || least <= ROUNDING * self.power {
+        if gained <= self.enough * least / rows || least <= ROUNDING * self.power {
             return true;
         }
         // Against what the step brought.
