@@ -13,6 +13,7 @@ use gwatt_identify::{
 };
 
 const PERIOD_S: f64 = 1e-3;
+const SHORT: usize = 16_000;
 const LONG: usize = 1_000_000;
 
 /// `SplitMix64`.
@@ -132,38 +133,78 @@ fn of(input: (Quantity, Vec<f64>), output: (Quantity, Vec<f64>)) -> Recording {
     }
 }
 
-/// A name, and the recording that goes with it.
-type Case = (&'static str, fn() -> Recording);
+/// A name, how it is identified, and the recording that goes with it.
+type Case = (&'static str, Method, fn() -> Recording);
 
-const CASES: [Case; 6] = [
-    ("16-s-friction-exact", || by_torque(16_000, 0.048, 0.0, 0.0)),
-    ("16-s-dry-exact", || by_torque(16_000, 0.048, 0.1, 0.0)),
-    ("16-s-dry", || by_torque(16_000, 0.048, 0.1, 0.01)),
-    ("1000000-dry", || by_torque(LONG, 0.048, 0.1, 0.01)),
-    ("1000000-position-from-command", || {
+const CASES: [Case; 14] = [
+    ("16-s-friction-exact", Method::Iv, || {
+        by_torque(SHORT, 0.048, 0.0, 0.0)
+    }),
+    ("16-s-dry-exact", Method::Iv, || {
+        by_torque(SHORT, 0.048, 0.1, 0.0)
+    }),
+    ("16-s-dry", Method::Iv, || {
+        by_torque(SHORT, 0.048, 0.1, 0.01)
+    }),
+    ("16-s-iv", Method::Iv, || by_torque(SHORT, 0.0, 0.0, 0.01)),
+    ("16-s-frequency", Method::Frequency, || {
+        by_torque(SHORT, 0.0, 0.0, 0.01)
+    }),
+    ("16-s-arx", Method::Arx, || by_torque(SHORT, 0.0, 0.0, 0.01)),
+    ("16-s-subspace", Method::Subspace, || {
+        by_torque(SHORT, 0.0, 0.0, 0.01)
+    }),
+    ("1000000-dry", Method::Iv, || {
+        by_torque(LONG, 0.048, 0.1, 0.01)
+    }),
+    ("1000000-iv", Method::Iv, || by_torque(LONG, 0.0, 0.0, 0.01)),
+    ("1000000-frequency", Method::Frequency, || {
+        by_torque(LONG, 0.0, 0.0, 0.01)
+    }),
+    ("1000000-arx", Method::Arx, || {
+        by_torque(LONG, 0.0, 0.0, 0.01)
+    }),
+    ("1000000-subspace", Method::Subspace, || {
+        by_torque(LONG, 0.0, 0.0, 0.01)
+    }),
+    ("1000000-position-from-command", Method::Iv, || {
         by_command(LONG, Quantity::Position)
     }),
-    ("1000000-acceleration-from-command", || {
+    ("1000000-acceleration-from-command", Method::Iv, || {
         by_command(LONG, Quantity::Acceleration)
     }),
 ];
 
+/// Seconds that the processor worked, where Linux counts them: next to other programs a clock
+/// says little.
+fn worked_s() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/schedstat").ok()?;
+    let nanoseconds: f64 = text.split(' ').next()?.parse().ok()?;
+    Some(nanoseconds * 1e-9)
+}
+
 fn main() {
     let wanted = std::env::args().skip(1).find(|arg| !arg.starts_with('-'));
-    for (name, recording) in CASES {
+    for (name, method, recording) in CASES {
         if wanted.as_ref().is_some_and(|wanted| wanted != name) {
             continue;
         }
         let recording = recording();
         let choice = Choice {
-            method: Method::Iv,
+            method,
             given: Given::default(),
             from_command: recording.get(Quantity::Command).is_some(),
         };
-        let began = Instant::now();
+        let (began, before) = (Instant::now(), worked_s());
         let found = flexible::identify(&recording, &choice);
         let seconds = began.elapsed().as_secs_f64();
+        let worked = before.zip(worked_s()).map_or(seconds, |(a, b)| b - a);
+        let inertia = found.as_ref().ok().and_then(|it| it.inertia);
         let word = found.map(|it| judgement::flexible(&it).word());
-        println!("{name}: {seconds:.2} s, {word:?}");
+        print!("{name}: {worked:.2} s of {seconds:.2} s, {word:?}");
+        match inertia {
+            Some(inertia) => println!(", {:.6} ± {:.6} kg·m²", inertia.value, inertia.std),
+            None => println!(),
+        }
     }
 }

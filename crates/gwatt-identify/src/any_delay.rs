@@ -1,7 +1,8 @@
 //! Delays between the steps that a search tries.
 
 use super::certainty;
-use super::output_error::{Effort, Estimate, Fitting};
+use super::estimate::Estimate;
+use super::output_error::{Effort, Fitting};
 
 /// The delay set free, if that is clearly worth a parameter: next to a fast zero
 /// and a fast pole it makes all of them uncertain.

@@ -1,10 +1,10 @@
 //! What a search looks at and what it chooses.
 
 use super::data::Data;
+use super::estimate::Estimate;
 use super::fewer_rows::FewerRows;
 use super::measured_noise::Noise;
 use super::noise::Whiteness;
-use super::output_error::Estimate;
 
 /// Samples on which models are compared; of commands more, as a sweep shows each
 /// mode but once, and of forces where the first ones show less than all do.

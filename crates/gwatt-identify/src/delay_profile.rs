@@ -7,7 +7,8 @@
 //! gets the likelihood of the best model that has it (the profile likelihood), and
 //! the model is that of the mean.
 
-use super::output_error::{Effort, Estimate};
+use super::estimate::Estimate;
+use super::output_error::Effort;
 use super::transfer::{Factor, TransferFunction};
 
 /// Steps of each fit: models go on from those of the dead time before.

@@ -14,9 +14,10 @@ use super::chosen::{CHOSEN, COMPARED, Chosen, WHITENING_MAX, fewer_rows, is_whit
 use super::data::Data;
 use super::delay_profile::doubt_s;
 use super::disturbance::as_it_is;
+use super::estimate::Estimate;
 use super::measured_noise::Noise;
 use super::noise::predicting;
-use super::output_error::{Effort, Estimate, Fitting, residuals};
+use super::output_error::{Effort, Fitting, residuals};
 use super::response_starts::from_subspace;
 use super::spectrum::FrequencyResponse;
 use super::stepwise_search::{Ladder, Reach, Restart, STEPS_LAST, best_of};

@@ -90,6 +90,7 @@ mod stretch;
 mod subspace;
 mod transfer;
 mod error;
+mod estimate;
 
 pub use candidate_models::Given;
 pub use column::{Kind, Quantity};

@@ -9,8 +9,9 @@
 use super::candidate_models::{CANCELLED_SHARE, cancelled, lean};
 use super::chosen::{Chosen, LAGS, filtered};
 use super::data::Data;
+use super::estimate::Estimate;
 use super::noise::Whiteness;
-use super::output_error::{Effort, Estimate, Fitting, residuals};
+use super::output_error::{Effort, Fitting, residuals};
 use super::stepwise_search::SEARCH_STEPS;
 use super::transfer::TransferFunction;
 

@@ -3,7 +3,8 @@
 
 use super::candidate_models::{Given, are_alike, neighbours, restarts};
 use super::certainty;
-use super::output_error::{Effort, Estimate, Fitting};
+use super::estimate::Estimate;
+use super::output_error::{Effort, Fitting};
 use super::parameters::parameters;
 use super::spectrum::FrequencyResponse;
 use super::transfer::{Factor, TransferFunction};

@@ -287,3 +287,16 @@ pub(crate) fn plant(random: &mut Random) -> TransferFunction {
         delay_s: 0.0,
     }
 }
+
+/// A drive that swings, and nothing else.
+pub(crate) fn stiff(random: &mut Random) -> TransferFunction {
+    TransferFunction {
+        gain: 1.0 / random.uniform(0.005, 0.1),
+        zeros: Vec::new(),
+        poles: vec![pair(
+            random.uniform(120.0, 250.0),
+            random.uniform(0.03, 0.1),
+        )],
+        delay_s: 0.0,
+    }
+}

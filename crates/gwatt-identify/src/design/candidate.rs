@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::known::Known;
 use super::line_power::line_powers;
-use super::multisine::{from_rest, multisine};
+use super::multisine::{Above, from_rest, multisine};
 use crate::error::{IdentifyError, Outcome};
 use crate::excitation::{Excitation, Shape, make};
 use crate::transfer::Factor;
@@ -182,7 +182,12 @@ pub(super) fn made(kind: Kind, known: &Known, amplitude: f64, seconds: f64) -> O
     let signal = powers.and_then(|powers| {
         let mut amplitudes = vec![0.0; first];
         amplitudes.extend(powers.iter().map(|p| p.max(0.0).sqrt()));
-        multisine(&amplitudes, count)
+        // What is to stay quiet may have a resonance there.
+        let above = match shaped {
+            Some(false) => Above::Free,
+            _ => Above::Still,
+        };
+        multisine(&amplitudes, count, above)
     });
     let mut values = signal.ok_or_else(|| {
         IdentifyError::new(

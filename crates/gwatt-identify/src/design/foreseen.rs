@@ -22,10 +22,10 @@ pub struct Foreseen {
 
 /// What a signal is to reach, relative: mass; frequency of a zero by its damping, and
 /// damping of a zero: at a zero a correction is wrong by 8.7 dB times the one and by 57°
-/// times the other, so that 0.1 dB and 0.6° are then two and a half standard errors: enough
+/// times the other, so that 0.1 dB and 0.6° are then more than three standard errors: enough
 /// for several axes at once; frequency and damping of a pole, as a verdict needs them.
 const INERTIA: f64 = 0.005;
-const ZERO: f64 = 0.004;
+const ZERO: f64 = 0.0032;
 const POLE: [f64; 2] = [0.005, 0.05];
 
 /// The standard errors of a root that are to be reached: of ln ω and of ζ.

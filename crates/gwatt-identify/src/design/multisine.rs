@@ -2,7 +2,10 @@
 //!
 //! Phases begin as Schroeder's (1970, *Synthesis of low-peak-factor signals and binary
 //! sequences with low autocorrelation*), after which the peaks are cut off and the
-//! amplitudes put back, again and again (van der Ouderaa, Schoukens & Renneboog 1988).
+//! amplitudes put back, again and again (van der Ouderaa, Schoukens & Renneboog 1988). Lines
+//! above all that are asked for may keep what the cuts made of them: a steeper signal has a
+//! smaller peak, and half as much power again where it is wanted ("snow lines", Guillaume,
+//! Schoukens, Pintelon & Kollár 1991).
 
 use std::f64::consts::TAU;
 
@@ -13,14 +16,23 @@ type C = Complex<f64>;
 
 /// Rounds at most, and values that all of them go through: a long signal gets fewer.
 const ROUNDS: usize = 60;
-const VALUES: usize = 20_000_000;
+const VALUES: usize = 40_000_000;
 /// Shares of the largest at which peaks are cut off, at first and at last: a deep cut at first
 /// leaves the small peaks that gentle ones never find.
 const CUTS: [f64; 2] = [0.5, 0.95];
 
+/// What lines above those that are asked for have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Above {
+    /// Nothing.
+    Still,
+    /// What makes the peak smaller.
+    Free,
+}
+
 /// One period of `count` samples whose lines have these amplitudes, from bin 0 on, with
 /// a peak of 1. `None` where there are none.
-pub(super) fn multisine(amplitudes: &[f64], count: usize) -> Option<Vec<f64>> {
+pub(super) fn multisine(amplitudes: &[f64], count: usize, above: Above) -> Option<Vec<f64>> {
     let mut planner = RealFftPlanner::<f64>::new();
     let (forward, backward) = (
         planner.plan_fft_forward(count),
@@ -63,7 +75,12 @@ pub(super) fn multisine(amplitudes: &[f64], count: usize) -> Option<Vec<f64>> {
             *x = x.clamp(-cut, cut);
         }
         forward.process(&mut values, &mut spectrum).ok()?;
-        for (kept, moved) in kept.iter_mut().zip(&spectrum) {
+        for (bin, (kept, moved)) in kept.iter_mut().zip(&spectrum).enumerate() {
+            if above == Above::Free && bin >= amplitudes.len() {
+                // Forth and back makes each line `count` times as large.
+                *kept = moved / count as f64;
+                continue;
+            }
             let size = moved.norm();
             if size > 0.0 {
                 *kept = moved * (kept.norm() / size);
@@ -111,7 +128,7 @@ mod tests {
         for (bin, amplitude) in amplitudes.iter_mut().enumerate().skip(4) {
             *amplitude = if bin < 100 { 1.0 } else { 0.5 };
         }
-        let x = multisine(&amplitudes, 2000).unwrap();
+        let x = multisine(&amplitudes, 2000, Above::Still).unwrap();
         assert_eq!(peak(&x), 1.0);
         let rms = (x.iter().map(|x| x * x).sum::<f64>() / 2000.0).sqrt();
         // 0.68; Schroeder's phases alone leave 0.42, random ones about 1/4.
@@ -146,7 +163,7 @@ mod tests {
 
     #[test]
     fn nothing_has_no_sines() {
-        assert!(multisine(&[0.0; 10], 100).is_none());
-        assert!(multisine(&[], 100).is_none());
+        assert!(multisine(&[0.0; 10], 100, Above::Still).is_none());
+        assert!(multisine(&[], 100, Above::Free).is_none());
     }
 }

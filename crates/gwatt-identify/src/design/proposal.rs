@@ -62,7 +62,7 @@ const SAMPLES_MAX: f64 = 2e6;
 const SECONDS: f64 = 16.0;
 const SECONDS_MAX: f64 = 600.0;
 /// A signal is so much longer than its errors need: they are known from a first recording.
-const TO_SPARE: f64 = 1.1;
+const TO_SPARE: f64 = 1.2;
 
 /// Compares signals for an axis and takes the best; where no length is given, as long as
 /// its standard errors need, up to ten minutes.
