@@ -108,6 +108,7 @@ fn with_word(machine: &Machine) -> Machine {
         verified: true,
         between_moves: true,
         with_jerk: false,
+        barrier: None,
         wait: None,
         change_s: 0.0,
         levels: None,

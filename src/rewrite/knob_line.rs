@@ -52,15 +52,16 @@ fn words(machine: &Machine, index: usize, values: &AxisValues) -> Option<String>
     }
 }
 
-/// The lines that do so: one, or two where the axes wait until it acts.
+/// The lines that do so: one, or more where it would act too early, or where the axes wait
+/// until it acts.
 pub(crate) fn lines(machine: &Machine, index: usize, values: &AxisValues) -> Option<Vec<String>> {
     let knob = machine.controller.knobs.get(index)?;
     if knob.argument == KnobArgument::Dynamics {
         return Some(dynamics(machine, &knob.name, values));
     }
-    let mut lines = vec![words(machine, index, values)?];
-    lines.extend(knob.wait.clone());
-    Some(lines)
+    let words = words(machine, index, values)?;
+    let lines = [knob.barrier.clone(), Some(words), knob.wait.clone()];
+    Some(lines.into_iter().flatten().collect())
 }
 
 /// A line for each of NC I's path axes that has a limit of jerk, of which `percent` are taken:

@@ -81,7 +81,7 @@ fn arcs_become_chords() {
         deviation_mm: 0.002,
         per_second: 0.0,
         per_circle: 0.0,
-        round_up: false,
+        more_from: 1.0,
         safe_exit: false,
     };
     let curve = Curve {
@@ -99,7 +99,7 @@ fn arcs_become_chords() {
         deviation_mm: f64::INFINITY,
         max_mm: 2.0,
         per_second: 50.0,
-        round_up: true,
+        more_from: 0.0,
         ..chords
     };
     // 50 mm/s and 50 a second: chords of 1 mm; 200 mm/s: of 2 mm.

@@ -23,7 +23,7 @@ const RULE: LookAhead = LookAhead {
         deviation_mm: f64::INFINITY,
         per_second: 0.0,
         per_circle: 0.0,
-        round_up: false,
+        more_from: 1.0,
         safe_exit: false,
     }),
 };

@@ -137,10 +137,9 @@ fn take(
                 && let Some(value) = log.positive(&word.place, word.text, "a queue")
                 && value >= 2.0
             {
-                found.look_ahead(
-                    format!("blocks = {}", shown(value - 1.0)),
-                    command.source(word),
-                );
+                // Half of the queue is fixed.
+                let seen = (0.5 * value - 1.0).floor().max(1.0);
+                found.look_ahead(format!("blocks = {}", shown(seen)), command.source(word));
             }
         }
         "M665" => kinematics::refuse(log, &command.place, "delta (M665)"),

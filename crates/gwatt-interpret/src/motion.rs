@@ -301,6 +301,11 @@ impl Control<'_> {
         }
         let path_accel_mm_s2 = self.path_accel(AxisSet(moving.0 | unknown_start.0));
         let mut accel_mm_s2 = *self.knobs.accel(kind);
+        self.free_retract(
+            AxisSet(moving.0 | unknown_start.0),
+            path_accel_mm_s2,
+            &mut accel_mm_s2,
+        );
         if !unknown_start.is_empty() {
             hold_to_path(self.machine, &mut accel_mm_s2, path_accel_mm_s2);
         }
@@ -309,6 +314,7 @@ impl Control<'_> {
             None => Stray::NONE,
         };
         self.moved = true;
+        self.printer.pending = true;
         run.steps.push(Step::Move(Move {
             line: run.line,
             number: run.block.number.map(|word| word.value),
@@ -383,6 +389,16 @@ impl Control<'_> {
             usize::from(!moving.contains(EXTRUDER))
         };
         self.knobs.path_accel_mm_s2[slot]
+    }
+
+    /// A move of the extruder alone has a limit of its own along the path.
+    #[inline]
+    pub(super) fn free_retract(&self, moving: AxisSet, path_mm_s2: f64, accel: &mut AxisValues) {
+        let alone = moving.0 == 1 << EXTRUDER;
+        let printer = &self.machine.controller.language.printer;
+        if alone && printer.retract_by_path && path_mm_s2.is_finite() {
+            accel[EXTRUDER] = path_mm_s2;
+        }
     }
 
     /// The path speed that F asks for, mm/s; reports an F that is missing.

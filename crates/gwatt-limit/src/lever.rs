@@ -3,7 +3,9 @@
 use super::change::Permit;
 use super::level_groups::{Groups, groups};
 use super::options::LimitOptions;
-use gwatt_machine::{AxisSet, Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath};
+use gwatt_machine::{
+    AxisId, AxisSet, Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath,
+};
 use gwatt_motion::{Move, MoveKind, own_path_speed};
 
 /// What shares may differ by from rounding.
@@ -160,9 +162,17 @@ pub(super) fn speed_cap(machine: &Machine, mv: &Move, permit: &Permit) -> Option
 /// The knob for acceleration that acts on a move: one along the path where there is such
 /// a limit that could be put back.
 fn accel_lever(machine: &Machine, mv: &Move, target: KnobTarget) -> Option<usize> {
+    let printer = &machine.controller.language.printer;
+    // A limit along the path has taken the place of the extruder's own.
+    let retracts = printer.retract_by_path
+        && mv.moving.0 == 1 << AxisId::E as u16
+        && mv.path_accel_mm_s2.is_finite();
     accel_knob(machine, target).filter(|index| {
         let knob = machine.controller.knobs.get(*index);
         knob.is_some_and(|knob| {
+            if retracts && knob.argument == KnobArgument::Axes {
+                return false;
+            }
             let along = knob.argument != KnobArgument::Value || mv.path_accel_mm_s2.is_finite();
             along && (!knob.with_jerk || is_scaled_evenly(machine, mv))
         })

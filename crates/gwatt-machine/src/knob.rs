@@ -28,6 +28,9 @@ pub struct Knob {
     pub between_moves: bool,
     /// It acts on the limits of jerk too, in the same share.
     pub with_jerk: bool,
+    /// The line before it that keeps it off the move before: one that is read only once that
+    /// is in the queue.
+    pub barrier: Option<String>,
     /// The line after it, for which the axes stand; before that it does not act.
     pub wait: Option<String>,
     /// How long the axes stand for a change of it, s.

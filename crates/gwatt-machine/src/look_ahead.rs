@@ -97,8 +97,8 @@ pub struct ChordRule {
     pub per_second: f64,
     /// Chords of a full circle at least.
     pub per_circle: f64,
-    /// The number of chords is rounded up, not down.
-    pub round_up: bool,
+    /// The part of a chord from which on it counts as one more, 1: never; 0 for any part.
+    pub more_from: f64,
     /// While nothing waits after a chord it may be left at the speed from which the rest
     /// of the arc is enough to stop; otherwise at none.
     pub safe_exit: bool,

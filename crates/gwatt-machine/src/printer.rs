@@ -14,6 +14,9 @@ pub struct Printer {
     /// Whether a line may hold several commands; else the first takes the
     /// whole line.
     pub several_commands: bool,
+    /// Limits that the program sets may act on the move before them already, unless a line
+    /// with a motion word stands in between.
+    pub early_limits: bool,
     /// mm/s in one unit of M203; `None` where M203 is not known and does
     /// nothing.
     pub speed_cap_mm_s: Option<f64>,
@@ -25,6 +28,11 @@ pub struct Printer {
     pub velocity_limit: bool,
     /// Axes that M204's P, T and S do not limit when no other axis moves.
     pub path_accel_spares: AxisSet,
+    /// M204 R, where it is given, takes the place of the extruder's own limit (M201) in moves
+    /// of it alone.
+    pub retract_by_path: bool,
+    /// Moves of these axes alone keep their F under M220.
+    pub feed_factor_spares: AxisSet,
     /// Axes that home together, in the order of homing.
     pub home_together: Vec<AxisSet>,
     /// G10 and G11 until the program sets them.
@@ -110,10 +118,13 @@ impl Default for Printer {
         Self {
             extruder_mode: ExtruderMode::Follows,
             several_commands: false,
+            early_limits: false,
             speed_cap_mm_s: Some(1.0),
             limits_in_mm: false,
             velocity_limit: false,
             path_accel_spares: AxisSet(1 << 9),
+            retract_by_path: false,
+            feed_factor_spares: AxisSet(0),
             home_together: vec![AxisSet(0b11), AxisSet(0b100)],
             retract: Retract::default(),
             endstop_letters: Vec::new(),

@@ -288,6 +288,8 @@ pub enum ActionKind {
     Rest,
     /// Another M word.
     Other,
+    /// Limits of the axes or of the path change, perhaps for the last move before already.
+    EarlyLimits,
     /// G61, G61.1, G64 (value 61, 61.1, 64).
     PathMode,
     /// The feed mode (the G number), or without a motion a new feed (0): only where

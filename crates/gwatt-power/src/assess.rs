@@ -19,7 +19,7 @@ use super::observer::Observer;
 use super::pending::{Pending, Rider, Successor};
 use super::spindle_share::SpindleShare;
 use gwatt_machine::{Machine, PathMode};
-use gwatt_motion::{Action, Move, MoveKind};
+use gwatt_motion::{Action, ActionKind, Move, MoveKind};
 use gwatt_plan::{Overrides, PathFigures, path_figures, plan};
 
 /// Judges the moves of one program.
@@ -185,6 +185,7 @@ impl<'m> Assessor<'m> {
                 ahead.stop(self.machine, &self.model, &mut self.observer);
                 ahead.emit(self.machine, &self.model, &mut self.observer, sink);
             }
+            Effect::Unknown if action.kind == ActionKind::EarlyLimits => ahead.doubt_limits(),
             Effect::Unknown => ahead.doubt(),
         }
     }

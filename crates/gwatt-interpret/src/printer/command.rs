@@ -28,7 +28,13 @@ impl Control<'_> {
         }
         for index in 0..COMMANDS {
             let so_far = run.steps.len();
+            let early =
+                self.printer.pending && self.machine.controller.language.printer.early_limits;
+            let limits = early.then(|| self.knobs.clone());
             let next = self.one_command(run, text, index > 0);
+            if limits.is_some_and(|limits| limits != self.knobs) {
+                run.act(ActionKind::EarlyLimits, 0.0);
+            }
             let moves = |steps: &[Step]| steps.iter().any(|step| matches!(step, Step::Move(_)));
             let (earlier, own) = run.steps.split_at_checked(so_far).unwrap_or_default();
             if index > 0 && moves(own) && earlier.get(before..).is_some_and(moves) {
@@ -71,6 +77,10 @@ impl Control<'_> {
         if Text::is_text(letter, number) {
             text_command(run, number);
             return None;
+        }
+        if letter == b'G' && matches!(number, 0 | 10 | 20 | 30) {
+            // It is read once the move before it is in the queue.
+            self.printer.pending = false;
         }
         let (parameters, next) = match text.parameters(at) {
             Ok(found) => found,
@@ -242,7 +252,12 @@ impl Control<'_> {
                 self.limit_velocity(run, None, accel, span);
             }
             (b'M', 2040) => return self.path_limits(run, parameters, span),
-            (b'M', 2050) => self.least_speeds(parameters),
+            (b'M', 2050) => {
+                if b"XYZEJ".iter().any(|letter| has(parameters, *letter)) {
+                    note_corners(run, span);
+                }
+                self.least_speeds(parameters);
+            }
             (b'M', 2070) => self.set_retract(run, parameters, span),
             (b'M', 2080) => self.set_recover(run, parameters, span),
             (b'M', 2090) => {
@@ -390,6 +405,7 @@ fn note_uncounted(run: &mut Run<'_, '_>, letter: u8, number: u16, span: Span) {
     match (letter, number) {
         (b'M', 9000 | 5720) => note_advance(run, span),
         (b'M', 4200 | 3750) => note_levelling(run, span),
+        (b'M', 5660) => note_corners(run, span),
         _ => {}
     }
 }
@@ -402,6 +418,12 @@ pub(super) fn note_advance(run: &mut Run<'_, '_>, span: Span) {
 pub(super) fn note_levelling(run: &mut Run<'_, '_>, span: Span) {
     let message = "what bed levelling adds to the moves of Z is not counted";
     run.report.note_once("bed-levelling", message, span);
+}
+
+fn note_corners(run: &mut Run<'_, '_>, span: Span) {
+    let message = "speeds of corners that the program sets are not followed: those of the machine \
+                   file count, and higher ones draw more";
+    run.report.note_once("corner-speeds", message, span);
 }
 
 /// Refuses a command by name.

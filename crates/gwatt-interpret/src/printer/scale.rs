@@ -17,7 +17,10 @@ impl Control<'_> {
         feed_mm_s: f64,
     ) -> f64 {
         let state = &self.printer;
-        let feed = feed_mm_s * state.feed_factor;
+        let spares = self.machine.controller.language.printer.feed_factor_spares;
+        let spared = course.commanded.0 & !spares.0 == 0;
+        let factor = if spared { 1.0 } else { state.feed_factor };
+        let feed = feed_mm_s * factor;
         if state.feed_factor != 1.0 {
             run.facts.fixed = Some("M220 scales its feed");
         }

@@ -367,6 +367,9 @@ pub(crate) struct KnobTable {
     pub(crate) between_moves: Option<bool>,
     /// Whether it acts on the limits of jerk too, in the same share; default false.
     pub(crate) with_jerk: Option<At<bool>>,
+    /// A line before the word that is read only once the move before it is in the queue,
+    /// where the word would act on that move too; default: it acts on later moves alone.
+    pub(crate) barrier: Option<String>,
     /// A line after the word, for which the axes stand and before which it does not act;
     /// default: it acts by itself.
     pub(crate) wait: Option<String>,

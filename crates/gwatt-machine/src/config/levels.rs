@@ -196,6 +196,7 @@ fn knob(
         verified: verified.unwrap_or(documented),
         between_moves: between.is_some(),
         with_jerk: false,
+        barrier: None,
         wait: None,
         change_s,
         levels: Some(Levels {

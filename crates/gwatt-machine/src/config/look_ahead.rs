@@ -117,6 +117,9 @@ pub(crate) struct ChordsTable {
     pub(crate) per_circle: Option<NotNegative>,
     /// Whether the number is rounded up; default false.
     pub(crate) round_up: Option<bool>,
+    /// The part of a chord from which on the number is rounded up, 0 to 1, in place of
+    /// `round_up`.
+    pub(crate) more_from: Option<NotNegative>,
     /// Whether a chord, while nothing waits after it, may be left at the speed from which
     /// the rest of the arc is enough to stop; default false.
     pub(crate) safe_exit: Option<bool>,
@@ -302,7 +305,7 @@ fn chords(table: &ChordsTable, base: Option<ChordRule>) -> ChordRule {
         deviation_mm: f64::INFINITY,
         per_second: 0.0,
         per_circle: 0.0,
-        round_up: false,
+        more_from: 1.0,
         safe_exit: false,
     });
     ChordRule {
@@ -311,7 +314,11 @@ fn chords(table: &ChordsTable, base: Option<ChordRule>) -> ChordRule {
         deviation_mm: or(table.deviation_mm.as_ref(), base.deviation_mm),
         per_second: or(table.per_second.as_ref(), base.per_second),
         per_circle: or(table.per_circle.as_ref(), base.per_circle),
-        round_up: table.round_up.unwrap_or(base.round_up),
+        more_from: match (&table.more_from, table.round_up) {
+            (Some(part), _) => part.value.min(1.0),
+            (None, Some(up)) => f64::from(u8::from(!up)),
+            (None, None) => base.more_from,
+        },
         safe_exit: table.safe_exit.unwrap_or(base.safe_exit),
     }
 }

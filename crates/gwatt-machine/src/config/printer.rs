@@ -37,6 +37,7 @@ pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> 
             Some(ExtruderModeName::Either) => ExtruderMode::Either,
         },
         several_commands: table.several_commands.unwrap_or(own.several_commands),
+        early_limits: table.early_limits.unwrap_or(own.early_limits),
         speed_cap_mm_s: match table.speed_cap {
             Some(SpeedCapName::None) => None,
             None | Some(SpeedCapName::PerSecond) => Some(1.0),
@@ -44,6 +45,11 @@ pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> 
         },
         limits_in_mm: table.limits_in_mm.unwrap_or(own.limits_in_mm),
         velocity_limit: table.velocity_limit.unwrap_or(own.velocity_limit),
+        retract_by_path: table.retract_by_path.unwrap_or(own.retract_by_path),
+        feed_factor_spares: table
+            .feed_factor_spares
+            .as_ref()
+            .map_or(own.feed_factor_spares, |letters| set(letters)),
         path_accel_spares: table
             .path_accel_spares
             .as_ref()

@@ -12,6 +12,9 @@ pub(crate) struct PrinterTable {
     pub(crate) extruder_mode: Option<ExtruderModeName>,
     /// Whether a line may hold several commands; default false.
     pub(crate) several_commands: Option<bool>,
+    /// Whether limits that the program sets (M201, M203, M204) may act on the move before them
+    /// already, unless a line with a motion word stands in between; default false.
+    pub(crate) early_limits: Option<bool>,
     /// Unit of M203; default per-second.
     pub(crate) speed_cap: Option<SpeedCapName>,
     /// Whether some versions take M201, M203 and M204 in mm after G20 too, others in
@@ -23,6 +26,11 @@ pub(crate) struct PrinterTable {
     /// Axes that M204's P, T and S do not limit when no other axis moves;
     /// default the extruder.
     pub(crate) path_accel_spares: Option<Vec<At<Letter>>>,
+    /// Whether M204 R takes the place of the extruder's own limit (M201) in moves of it alone;
+    /// default false: both count.
+    pub(crate) retract_by_path: Option<bool>,
+    /// Axes whose moves alone keep their F under M220; default none.
+    pub(crate) feed_factor_spares: Option<Vec<At<Letter>>>,
     /// Axes that home together, in the order of homing; default XY, then Z.
     pub(crate) home_together: Option<Vec<Vec<At<Letter>>>>,
     /// G10 and G11 until the program sets them.

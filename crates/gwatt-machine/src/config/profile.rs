@@ -380,6 +380,7 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         verified: knob.verified.unwrap_or(false),
         between_moves: knob.between_moves.unwrap_or(false),
         with_jerk: with_jerk(findings, knob, target, unit),
+        barrier: knob.barrier.clone(),
         wait: knob.wait.clone(),
         change_s: 0.0,
         levels: None,

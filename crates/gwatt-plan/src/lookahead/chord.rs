@@ -44,10 +44,11 @@ fn number(rule: &ChordRule, curve: &Curve, feed_mm_s: f64) -> f64 {
     }
     let least = rule.per_circle * curve.sweep_rad.abs() / std::f64::consts::TAU;
     let count = (flat_mm / chord_mm.max(rule.min_mm)).max(least);
-    if rule.round_up {
-        count.ceil()
+    let whole = count.floor();
+    if rule.more_from < 1.0 && count > whole && count - whole >= rule.more_from {
+        whole + 1.0
     } else {
-        count.floor()
+        whole
     }
 }
 

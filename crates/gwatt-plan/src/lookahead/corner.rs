@@ -105,7 +105,7 @@ impl Before {
     }
 }
 
-/// Whether X, Y or Z move, and whether the extruder feeds.
+/// Whether the extruder feeds while X or Y move, and whether it moves otherwise.
 type Prints = (bool, bool);
 
 /// The element after a joint.
@@ -138,11 +138,10 @@ impl<'e, T> After<'e, T> {
         };
         let prints = match rule {
             CornerRule::SpeedStep { .. } => {
-                let mut linear = element.start.iter().take(LINEAR);
-                (
-                    linear.any(|change| *change != 0.0),
-                    element.start[EXTRUDER] > 0.0,
-                )
+                let moves = element.start.iter().take(2).any(|change| *change != 0.0);
+                let extrudes = element.start[EXTRUDER];
+                let prints = moves && extrudes > 0.0;
+                (prints, extrudes != 0.0 && !prints)
             }
             _ => (false, false),
         };
