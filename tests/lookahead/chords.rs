@@ -105,6 +105,17 @@ fn arcs_become_chords() {
     // 50 mm/s and 50 a second: chords of 1 mm; 200 mm/s: of 2 mm.
     assert_eq!(chord_count(&coarse, &curve, 50.0), 32);
     assert_eq!(chord_count(&coarse, &curve, 200.0), 16);
+    // One more from 0.2 of a chord on: 31.4159 are 32, 30.08 (a turn of 3.008 rad) are 30.
+    let from = |sweep_rad: f64| {
+        let rule = ChordRule {
+            max_mm: 1.0,
+            per_second: 0.0,
+            more_from: 0.2,
+            ..coarse
+        };
+        chord_count(&rule, &Curve { sweep_rad, ..curve }, 50.0)
+    };
+    assert_eq!((from(PI), from(3.008)), (32, 30));
     let round = ChordRule {
         per_circle: 72.0,
         ..coarse

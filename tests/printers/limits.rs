@@ -22,6 +22,26 @@ fn speed_limits_of_axes() {
     assert_snapshot!(marlin("M205 S20 T0 X8\nG1 X1 E1 F600\nG1 X2\n"), @r"
     2 feed X0.000>1.000 E0.000>1.000 v20.000
     3 feed X1.000>2.000 v10.000
+    note corner-speeds
+    ");
+    assert_snapshot!(reprap("M566 X1800\nG1 X1 F600\n"), @r"
+    2 feed X0.000>1.000 v10.000
+    note corner-speeds
+    ");
+}
+
+/// M220 scales moves of the extruder alone on Marlin, on RepRapFirmware only those that name
+/// an axis.
+#[test]
+fn the_speed_factor_and_the_extruder() {
+    let program = "M220 S50\nG1 E5 F600\nG1 X5\n";
+    assert_snapshot!(marlin(program), @r"
+    2 feed E0.000>5.000 v5.000
+    3 feed X0.000>5.000 v5.000
+    ");
+    assert_snapshot!(reprap(program), @r"
+    2 feed E0.000>5.000 v10.000
+    3 feed X0.000>5.000 v5.000
     ");
 }
 
@@ -45,6 +65,10 @@ fn accelerations_along_the_path() {
     3 feed X10.000>20.000 v10.000 a800
     4 feed E1.000>2.000 v10.000
     5 feed Z0.000>1.000 v10.000
+    ");
+    assert_snapshot!(reprap("M204 S700 T800\nG1 X10 E1 F600\nG1 X20\n"), @r"
+    2 feed X0.000>10.000 E0.000>1.000 v10.000 a700
+    3 feed X10.000>20.000 v10.000 a800
     ");
     assert_snapshot!(marlin("M204 P0\n"), @"printer-value: this value is out of range");
 }
@@ -98,6 +122,50 @@ fn raised_limits_raise_the_peak() {
     .expect("accepted")
     .peak_w;
     assert!(arc > 2.0, "{arc}");
+}
+
+fn peak_w(controller: &str, program: &str) -> f64 {
+    let input = Cursor::new(program.as_bytes());
+    let machine = machine(controller);
+    let found = pipeline::analyze(input, &machine, &Options::default(), None);
+    found.expect("accepted").peak_w
+}
+
+/// RepRapFirmware: M204 is read while the move before it waits for room in the queue, unless
+/// there is room; a line with G1 waits for that. 10 kg at 0.1 m/s and 0.5 m/s² draw 0.5 W.
+#[test]
+fn limits_may_act_on_the_move_before() {
+    let program = |between: &str| {
+        format!("M204 P500 T500\nG1 X60 F6000\n{between}M204 P1000 T1000\nG1 X59 F60\n")
+    };
+    let exact = peak_w("reprap", &program("G1\n"));
+    assert!((exact - 0.5).abs() < 1e-6, "{exact}");
+    let early = peak_w("reprap", &program(""));
+    assert!(early >= 1.0, "{early}");
+    assert_eq!(peak_w("reprap", &program("M400\n")), exact);
+    assert_eq!(
+        peak_w("marlin", &program("")),
+        peak_w("marlin", &program("G1\n"))
+    );
+    // The words that `limit` writes act where they stand.
+    let shop = Shop::mill("reprap", "peak_power_w = 600", "", "");
+    shop.put("a.gcode", "G1 X60 F3000\nG1 X0 Y50 F9000\nG1 X50 F3000\n");
+    let (code, _, errors) = shop.run("limit a.gcode -o out.gcode");
+    assert_eq!(code, 0, "{errors}");
+    let written = shop.get("out.gcode");
+    let lines: Vec<&str> = written.lines().collect();
+    let words = lines.windows(2).filter(|pair| pair[1].starts_with("M201 "));
+    assert!(words.clone().count() > 0, "{written}");
+    assert!(words.clone().all(|pair| pair[0] == "G1"), "{written}");
+}
+
+/// Marlin: M204 R alone limits moves of the extruder alone, whatever M201 says of it: 10 kg at
+/// 0.01 m/s and 0.8 m/s² draw 0.08 W.
+#[test]
+fn retractions_have_a_limit_of_their_own() {
+    let program = "M201 E100\nM204 R800\nG1 E5 F600\n";
+    let peak_w = peak_w("marlin", program);
+    assert!((peak_w - 0.08).abs() < 1e-9, "{peak_w}");
 }
 
 /// Between the moves of homing the axes stand: each axis draws

@@ -79,7 +79,7 @@ impl Control<'_> {
 
         // From here on, it happens.
         self.moved = true;
-        self.printer.pending = true;
+        self.printer.pending = !moving.is_empty();
         steps.push(Step::Move(Move {
             line,
             number: block.number.map(|word| word.value),

@@ -314,7 +314,7 @@ impl Control<'_> {
             None => Stray::NONE,
         };
         self.moved = true;
-        self.printer.pending = true;
+        self.printer.pending = !(moving.is_empty() && unknown_start.is_empty());
         run.steps.push(Step::Move(Move {
             line: run.line,
             number: run.block.number.map(|word| word.value),

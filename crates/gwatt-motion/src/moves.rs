@@ -288,7 +288,8 @@ pub enum ActionKind {
     Rest,
     /// Another M word.
     Other,
-    /// Limits of the axes or of the path change, perhaps for the last move before already.
+    /// Limits of the axes or of the path change, perhaps for the last move before already:
+    /// the factor by which accelerations rise at most.
     EarlyLimits,
     /// G61, G61.1, G64 (value 61, 61.1, 64).
     PathMode,

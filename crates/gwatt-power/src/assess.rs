@@ -185,7 +185,9 @@ impl<'m> Assessor<'m> {
                 ahead.stop(self.machine, &self.model, &mut self.observer);
                 ahead.emit(self.machine, &self.model, &mut self.observer, sink);
             }
-            Effect::Unknown if action.kind == ActionKind::EarlyLimits => ahead.doubt_limits(),
+            Effect::Unknown if action.kind == ActionKind::EarlyLimits => {
+                ahead.doubt_limits(&self.model, &mut self.observer, action.value);
+            }
             Effect::Unknown => ahead.doubt(),
         }
     }

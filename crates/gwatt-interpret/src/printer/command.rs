@@ -4,6 +4,7 @@ use super::line::{Head, Parameters, Text, has, value};
 use super::verify_checksum;
 use crate::code::{GCode, Motion};
 use crate::control::{Control, Run};
+use crate::knob::KnobState;
 use crate::report::Report;
 use crate::tools::ToolLength;
 use gwatt_machine::{Command, ExtruderMode};
@@ -32,8 +33,8 @@ impl Control<'_> {
                 self.printer.pending && self.machine.controller.language.printer.early_limits;
             let limits = early.then(|| self.knobs.clone());
             let next = self.one_command(run, text, index > 0);
-            if limits.is_some_and(|limits| limits != self.knobs) {
-                run.act(ActionKind::EarlyLimits, 0.0);
+            if let Some(before) = limits.filter(|before| *before != self.knobs) {
+                run.act(ActionKind::EarlyLimits, rise(&before, &self.knobs));
             }
             let moves = |steps: &[Step]| steps.iter().any(|step| matches!(step, Step::Move(_)));
             let (earlier, own) = run.steps.split_at_checked(so_far).unwrap_or_default();
@@ -398,6 +399,21 @@ fn flags_of_a_move(run: &mut Run<'_, '_>, parameters: &Parameters) {
             .error("missing-number", message, parameter.span)
             .help("write the number right after the letter, as in `X12.5`");
     }
+}
+
+/// By what factor limits of acceleration rise at most.
+fn rise(before: &KnobState, after: &KnobState) -> f64 {
+    let pairs = [
+        (&before.feed_accel_mm_s2[..], &after.feed_accel_mm_s2[..]),
+        (&before.rapid_accel_mm_s2[..], &after.rapid_accel_mm_s2[..]),
+        (&before.path_accel_mm_s2[..], &after.path_accel_mm_s2[..]),
+    ];
+    let factors = pairs.into_iter().flat_map(|(before, after)| {
+        let both = before.iter().zip(after);
+        both.filter(|(before, _)| **before > 0.0 && before.is_finite())
+            .map(|(before, after)| after / before)
+    });
+    factors.fold(1.0, f64::max)
 }
 
 /// What is known to be left out of the estimate.

@@ -63,8 +63,6 @@ pub(super) struct Ahead {
     at_rest: bool,
     /// Something stands after the last move that may or may not stop it.
     in_doubt: bool,
-    /// The limits of the next move may hold for the last one too.
-    early_limits: bool,
     /// What the motion reaches at least, from rest where it was in doubt last,
     /// mm²/s²; nothing once that is as fast as planned.
     reach2: Option<f64>,
@@ -141,7 +139,6 @@ impl Ahead {
             open: Queue::new(),
             at_rest: true,
             in_doubt: false,
-            early_limits: false,
             reach2: None,
             late: None,
             unwaited: None,
@@ -196,11 +193,6 @@ impl Ahead {
         let pace = surges.map(|surges| surges.push(number, &self.largest.element));
         if self.in_doubt {
             self.brake_in_doubt(model, observer);
-        }
-        if std::mem::take(&mut self.early_limits)
-            && let Some(last) = self.open.back_mut()
-        {
-            raise_limits(&mut last.mv, mv);
         }
         let open = self.open.push(mv, text, want);
         if let Some(pace) = pace {
@@ -324,10 +316,19 @@ impl Ahead {
         self.in_doubt |= !(self.at_rest || self.rests());
     }
 
-    /// The same, and the limits of the next move may hold for the last one too.
-    pub fn doubt_limits(&mut self) {
+    /// New limits may hold for the last move already: its accelerations may be higher by this
+    /// factor, and it may be as fast as F asks.
+    pub fn doubt_limits(&mut self, model: &PowerModel, observer: &mut Observer, factor: f64) {
+        if self.at_rest || self.rests() {
+            return;
+        }
         self.doubt();
-        self.early_limits = self.in_doubt;
+        self.brake_in_doubt(model, observer);
+        if let Some(last) = self.open.back_mut() {
+            last.mv.accel_mm_s2 = last.mv.accel_mm_s2.map(|limit| factor * limit);
+            last.mv.path_accel_mm_s2 *= factor;
+            last.mv.feed_mm_s *= std::mem::replace(&mut last.mv.feed_excess, 1.0);
+        }
     }
 
     /// The moves that a stop here would change are in doubt.
@@ -384,15 +385,4 @@ impl Ahead {
             nominal.end_mm_s = [0.0; AXES];
         }
     }
-}
-
-/// Raises the limits of a move to those of the next one.
-#[cold]
-fn raise_limits(mv: &mut Move, next: &Move) {
-    for (limit, next) in mv.accel_mm_s2.iter_mut().zip(&next.accel_mm_s2) {
-        *limit = limit.max(*next);
-    }
-    mv.path_accel_mm_s2 = mv.path_accel_mm_s2.max(next.path_accel_mm_s2);
-    mv.feed_mm_s *= std::mem::replace(&mut mv.feed_excess, 1.0);
-    mv.rapid_factor = mv.rapid_factor.max(next.rapid_factor);
 }

@@ -187,7 +187,10 @@ impl<P: Copy> Window<P> {
             && !self.smooth
         {
             // The sum after it bounds all that is further after.
-            self.ready = self.ready.max(self.nodes.len().saturating_sub(blocks + 3));
+            let last = self.nodes.len().saturating_sub(blocks + 3);
+            while self.ready < last && self.is_bounded(self.ready + 1) {
+                self.ready += 1;
+            }
         }
         let open = self.nodes.len() - self.ready;
         if open >= self.open_max {
@@ -327,6 +330,16 @@ impl<P: Copy> Window<P> {
         self.ready -= 1;
         self.now2 = end2;
         Some(span)
+    }
+
+    /// Whether what is further after an element than the controller sees bears nothing on it:
+    /// to the end of all that is known it could stop from a higher speed.
+    #[inline]
+    fn is_bounded(&self, i: usize) -> bool {
+        let (Some(node), Some(last)) = (self.nodes.get(i), self.nodes.back()) else {
+            return false;
+        };
+        last.run != node.run || last.sum - node.sum + last.ramp2() >= self.rest2(i)
     }
 
     /// Speed, squared, from which the controller can stop within the blocks
