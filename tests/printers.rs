@@ -17,6 +17,11 @@ use insta::assert_snapshot;
 /// X Y Z E: 100 mm/s, 1000 mm/s², home at 0, homing at 10 mm/s; a nozzle heater of
 /// 40 W, a bed of 200 W and a fan of 5 W.
 fn machine(controller: &str) -> Machine {
+    machine_with(controller, "")
+}
+
+/// That machine with more in its file.
+fn machine_with(controller: &str, more: &str) -> Machine {
     let mut text = format!(
         "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e5\n"
     );
@@ -36,6 +41,7 @@ fn machine(controller: &str) -> Machine {
          [[load]]\non = [\"M140\", \"M190\"]\noff = \"M81\"\npower_w = 200\n\
          [[load]]\non = \"M106\"\noff = [\"M107\", \"M81\"]\npower_w = 5\n",
     );
+    text.push_str(more);
     load(&text)
 }
 
@@ -233,9 +239,10 @@ fn unknown_moves_count_in_full() {
     ");
     // RepRapFirmware: T0 runs files of the machine; G1 H1 ends at an endstop.
     assert_snapshot!(reprap("T0\nG1 H1 X-200 F600\nG1 H0 X1\n"), @r"
-    1 feed from anywhere XYZE
-    2 feed from anywhere XYZE
-    3 feed from anywhere X v10.000
+    1 feed from anywhere XYZE loads 111
+    2 feed from anywhere XYZE loads 111
+    3 feed from anywhere X v10.000 loads 111
+    note macro-heaters
     note unknown-moves
     ");
 }

@@ -263,3 +263,22 @@ fn nothing_may_be_fed_back() {
         assert_eq!(findings(&with(fine)), "");
     }
 }
+
+/// M203 of Marlin is in mm/s, of RepRapFirmware in mm/min: 500 mm/s read as mm/min is 60 times too
+/// slow, and so are powers.
+#[test]
+fn speed_of_a_printer_in_mm_s() {
+    let text = |controller: &str| {
+        format!(
+            "schema = 1\nname = \"t\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 300\n\
+             [axes.X]\nrapid_mm_min = 500\naccel_mm_s2 = 1000\nmass_kg = 1\n\
+             [axes.Z]\nrapid_mm_min = 300\naccel_mm_s2 = 100\nmass_kg = 1\n"
+        )
+    };
+    assert_snapshot!(findings(&text("marlin")), @r"
+    line 7, warning machine-unit: `rapid_mm_min`: 500 mm/min is unusually small for a printer / mm/s given? 1 mm/s is 60 mm/min; powers would be too low
+      | rapid_mm_min = 500
+      |                ^^^
+    ");
+    assert_eq!(findings(&text("grbl")), "");
+}

@@ -62,3 +62,49 @@ fn heaters_follow_their_target() {
         assert!(errors.iter().any(|it| it.message == missing), "{errors:?}");
     }
 }
+
+/// What a macro switches on only the machine knows: nozzle, bed and fan count as on from there,
+/// a heater until its target is 0 for certain.
+#[test]
+fn heaters_may_be_on_after_a_macro() {
+    let own = machine_with("klipper", "[language]\nunknown_moves = [\"START_PRINT\"]\n");
+    assert_snapshot!(run(&own,
+        "G1 X1 F60\nSTART_PRINT BED=60\nG1 X2\nM104 S0\nG1 X3\nM140 S0\nG1 X4\nM107\nG1 X5\n"
+    ), @r"
+    1 feed X0.000>1.000 v1.000 a1000
+    2 feed from anywhere XYZE a1000 loads 111
+    3 feed from anywhere X v1.000 a1000 loads 111
+    5 feed X2.000>3.000 v1.000 a1000 loads 110
+    7 feed X3.000>4.000 v1.000 a1000 loads 100
+    9 feed X4.000>5.000 v1.000 a1000 loads 100
+    note macro-heaters
+    note unknown-moves
+    ");
+    // Of several tools one target says nothing of the others; this ends all.
+    assert_snapshot!(run(&own,
+        "START_PRINT\nM104 T0 S0\nG1 X3 F60\nT1\nM104 S0\nG1 X4\nTURN_OFF_HEATERS\nG1 X5\n"
+    ), @r"
+    1 feed from anywhere XYZE a1000 loads 111
+    3 feed from anywhere X v1.000 a1000 loads 111
+    4 feed from anywhere XYZE a1000 loads 111
+    6 feed from anywhere X v1.000 a1000 loads 111
+    8 feed X4.000>5.000 v1.000 a1000 loads 100
+    note macro-heaters
+    note unknown-moves
+    ");
+    // What Marlin does of itself heats nothing but under G26; RepRapFirmware runs files.
+    assert_snapshot!(marlin("G29\nG1 X1 F60\nG26\n"), @r"
+    1 feed from anywhere XYZE
+    2 feed from anywhere X v1.000
+    3 feed from anywhere XYZE loads 111
+    note unknown-moves
+    note bed-levelling
+    note macro-heaters
+    ");
+    let bare = load(
+        "schema = 1\nname = \"t\"\ncontroller = \"klipper\"\n[converter]\npeak_power_w = 1e5\n\
+         [language]\nunknown_moves = [\"START_PRINT\"]\n\
+         [axes.X]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10\n",
+    );
+    assert!(run(&bare, "START_PRINT\n").contains("note heaters"));
+}

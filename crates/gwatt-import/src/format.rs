@@ -156,10 +156,13 @@ fn printer(line: &str, marks: &mut Vec<Format>) {
         .take_while(char::is_ascii_alphanumeric)
         .collect();
     let code = code.to_ascii_uppercase();
+    // Limits of axes, drivers and microstepping have words in both: they are no marks.
     let only_reprap = [
-        "M584", "M566", "M208", "M574", "M669", "M667", "M350", "M569", "M550", "M563",
+        "M584", "M566", "M574", "M669", "M667", "M550", "M563", "M950",
     ];
-    if line.contains("echo:") || code == "M205" {
+    let only_marlin = ["M205", "M145", "M149", "M200", "M603", "M851"];
+    let units = line.contains("units/s") || line.contains("echo:");
+    if units || only_marlin.contains(&code.as_str()) && words::is_command(line) {
         marks.push(Format::Marlin);
     } else if reprap::include(line).is_some()
         || line.starts_with(['M', 'm']) && only_reprap.contains(&code.as_str())

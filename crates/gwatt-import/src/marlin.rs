@@ -204,8 +204,8 @@ fn finish(found: &mut Found, settings: Settings) {
     if let Some(deviation) = settings.deviation.filter(|it| it.value > 0.0) {
         let field = format!("deviation_mm = {}", shown(deviation.value));
         found.corner = Some(("junction_deviation", vec![entry(field, deviation.source)]));
-    } else if !settings.steps.is_empty() {
-        found.corner = Some(("classic_jerk", vec![classic(found, settings.steps)]));
+    } else if let Some(steps) = classic(found, settings.steps) {
+        found.corner = Some(("classic_jerk", vec![steps]));
     }
     if let [Some(length), Some(speed), _] = &settings.fields
         && speed.value > 0.0
@@ -219,8 +219,8 @@ fn finish(found: &mut Found, settings: Settings) {
     }
 }
 
-/// Steps of speed in the order of the axes; old firmware has one for X and Y.
-pub(crate) fn classic(found: &Found, mut steps: Vec<(AxisId, Figure)>) -> Entry {
+/// Steps of speed in the order of the axes, if there are any; old firmware has one for X and Y.
+pub(crate) fn classic(found: &Found, mut steps: Vec<(AxisId, Figure)>) -> Option<Entry> {
     let x = steps.iter().find(|(id, _)| *id == AxisId::X).cloned();
     let y = steps.iter().any(|(id, _)| *id == AxisId::Y);
     if let Some((_, x)) = x.filter(|_| !y) {
@@ -238,10 +238,8 @@ pub(crate) fn classic(found: &Found, mut steps: Vec<(AxisId, Figure)>) -> Entry 
             sources.push(step.source.clone());
         }
     }
-    entry(
-        format!("step_mm_s = {{ {} }}", parts.join(", ")),
-        sources.join(", "),
-    )
+    let field = format!("step_mm_s = {{ {} }}", parts.join(", "));
+    (!parts.is_empty()).then(|| entry(field, sources.join(", ")))
 }
 
 /// M503 does not say whether `S_CURVE_ACCELERATION` is on: the higher counts.

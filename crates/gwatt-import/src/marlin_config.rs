@@ -291,8 +291,8 @@ fn corners(defines: &Defines<'_>, found: &mut Found, log: &mut Log) {
                 steps.push((id, step));
             }
         }
-        if !steps.is_empty() {
-            found.corner = Some(("classic_jerk", vec![classic(found, steps)]));
+        if let Some(steps) = classic(found, steps) {
+            found.corner = Some(("classic_jerk", vec![steps]));
             return;
         }
     }

@@ -334,8 +334,8 @@ fn finish(found: &mut Found, settings: Settings) {
             sources.join(", "),
         );
     }
-    if !settings.steps.is_empty() {
-        let mut fields = vec![crate::marlin::classic(found, settings.steps)];
+    if let Some(steps) = crate::marlin::classic(found, settings.steps) {
+        let mut fields = vec![steps];
         if let Some(policy) = settings.all_kinds {
             let same = policy.value == 0.0;
             fields.push(entry(format!("same_kind_only = {same}"), policy.source));

@@ -137,6 +137,36 @@ fn marlin_settings() {
     "#);
 }
 
+/// A dump of settings without `echo:`, as a host or a macro keeps it: M205 and the like are Marlin's,
+/// and M208, M569 and M350 of both. M205 without a step of speed writes no table of them.
+#[test]
+fn marlin_settings_without_echo() {
+    let text = "; Linear Units:\nG21\n; Temperature Units:\nM149 C\n; Maximum feedrates (units/s):\n\
+                M203 X500.00 Y500.00 Z5.00\n; Maximum Acceleration (units/s2):\nM201 X500.00 Y500.00 Z100.00\n\
+                ; Advanced:\nM205 B20000.00 S0.00 T0.00\nM145 S0 H185.00 B45.00 F255\nM208 S0.00 W0.00 F480.00\n\
+                M569 S1 X Y\nM350 X16\nM209 S0\nM603 L0.00 U100.00\n";
+    assert_snapshot!(fields(text), @r#"
+    controller = "marlin"
+    [converter]
+    [path]
+    shortest_at_feed_s = 0.02    # M205 B20000.00 (line 10)
+    [axes.X]
+    kind = "linear"
+    rapid_mm_min = 30000         # M203 X500.00 (line 6)
+    accel_mm_s2 = 500            # M201 X500.00 (line 8)
+    [axes.Y]
+    kind = "linear"
+    rapid_mm_min = 30000         # M203 Y500.00 (line 6)
+    accel_mm_s2 = 500            # M201 Y500.00 (line 8)
+    [axes.Z]
+    kind = "linear"
+    rapid_mm_min = 300           # M203 Z5.00 (line 6)
+    accel_mm_s2 = 100            # M201 Z100.00 (line 8)
+    [limits]
+    margin = 0.1                 # share of the peak power that is kept free
+    "#);
+}
+
 /// Old firmware: S is the acceleration of all moves, T of retracts; X and Y have one jerk.
 #[test]
 fn marlin_settings_of_old() {

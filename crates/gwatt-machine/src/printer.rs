@@ -43,6 +43,8 @@ pub struct Printer {
     pub ignored_macros: Vec<Command>,
     /// Commands whose moves are not known.
     pub unknown_moves: Vec<Command>,
+    /// Those of them that may switch heaters and fans: macros and files of the machine.
+    pub may_heat: Vec<Command>,
     /// Commands that shift the coordinates.
     pub shifts: Vec<Command>,
 }
@@ -130,6 +132,7 @@ impl Default for Printer {
             endstop_letters: Vec::new(),
             ignored_macros: Vec::new(),
             unknown_moves: Vec::new(),
+            may_heat: Vec::new(),
             shifts: Vec::new(),
         }
     }

@@ -190,6 +190,10 @@ impl Control<'_> {
             self.shift_axes(parameters);
             run.act(ActionKind::Other, action);
         } else if listed(&printer.unknown_moves) {
+            self.printer.several_tools |= letter == b'T' && number > 0;
+            if listed(&printer.may_heat) {
+                self.may_heat(run, span);
+            }
             self.unknown_moves(run, span);
             if has(parameters, b'F') {
                 // Whether it stays in force, firmwares see differently.

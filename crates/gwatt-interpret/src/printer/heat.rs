@@ -42,7 +42,15 @@ impl Control<'_> {
             None if HEATERS.contains(&word) => None,
             None => Some(true),
         };
+        self.printer.several_tools |= by_tool && index > 0;
         let known = self.switch_load((b'M', word), on, Some(index));
+        let named = [b'T', b'H', b'P']
+            .iter()
+            .any(|letter| value(parameters, *letter).is_some());
+        let only = by_tool && !self.printer.several_tools || matches!(word as u32, 140 | 190);
+        if on == Some(false) && only && !named {
+            self.surely_off(word);
+        }
         let off_word = word == 107.0 || by_tool;
         for load in 0..self.machine.loads.len().min(32) {
             let Some(data) = self.machine.loads.get(load) else {
@@ -94,9 +102,47 @@ impl Control<'_> {
     /// when none is left.
     fn put_out(&mut self, load: usize, bits: u32) {
         self.printer.lit[load] &= !bits;
-        if self.printer.lit[load] == 0 {
+        if bits == u32::MAX {
+            self.printer.maybe_lit &= !(1 << load);
+        }
+        if self.printer.lit[load] == 0 && self.printer.maybe_lit & (1 << load) == 0 {
             self.loads_off |= 1 << load;
         }
+    }
+
+    /// A word has switched off all that it could have switched on, in a macro too.
+    fn surely_off(&mut self, word: f64) {
+        for load in 0..self.machine.loads.len().min(32) {
+            let nozzle = |word: f64| matches!(word as u32, 104 | 109);
+            let alike = |on: &(u8, f64)| on.0 == b'M' && nozzle(on.1) == nozzle(word);
+            let data = self.machine.loads.get(load).map(|data| data.on.as_slice());
+            let heater = |on: &[(u8, f64)]| {
+                let bed = |on: &(u8, f64)| nozzle(on.1) || matches!(on.1 as u32, 140 | 190);
+                on.contains(&(b'M', word)) && on.iter().all(|on| alike(on) && bed(on))
+            };
+            if data.is_some_and(heater) {
+                self.printer.maybe_lit &= !(1 << load);
+                self.put_out(load, 0);
+            }
+        }
+    }
+
+    /// A macro, of which only the machine knows what it switches: every load may be on.
+    pub(super) fn may_heat(&mut self, run: &mut Run<'_, '_>, span: Span) {
+        let loads = self.machine.loads.len().min(32) as u32;
+        if loads == 0 {
+            return note_heaters(run, span);
+        }
+        let all = u32::MAX.checked_shr(32 - loads).unwrap_or_default();
+        self.printer.maybe_lit |= all;
+        self.loads |= all;
+        self.loads_off &= !all;
+        let name = String::from_utf8_lossy(span.of(run.report.text)).into_owned();
+        let message = format!(
+            "what {name} switches on only the machine knows: every [[load]] counts as on from here, \
+             a nozzle or bed until its target is set to 0, others to the end"
+        );
+        run.report.note_once("macro-heaters", &message, span);
     }
 
     /// `SET_HEATER_TEMPERATURE HEATER=name TARGET=t`.
@@ -126,6 +172,10 @@ impl Control<'_> {
             _ => ([141.0, 191.0], NAMED),
         };
         let known = words.map(|word| self.switch_load((b'M', word), Some(on), Some(index)));
+        if !on && name == b"heater_bed" {
+            self.surely_off(140.0);
+            self.surely_off(190.0);
+        }
         if on && known == [false; 2] {
             note_heaters(run, span);
         }
@@ -151,4 +201,72 @@ impl Control<'_> {
 fn note_heaters(run: &mut Run<'_, '_>, span: Span) {
     let message = "heaters and fans without a [[load]] in the machine file are not counted";
     run.report.note_once("heaters", message, span);
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Diagnostics, Effects, Facts, Interpreter, Reading};
+    use gwatt_machine::Machine;
+    use gwatt_motion::Step;
+    use gwatt_syntax::{Block, scan_line};
+
+    /// The loads under which each line moves, nozzle 1, bed 2, fan 4, and whether the note stands.
+    fn loads(lines: &[&str]) -> (Vec<u32>, bool) {
+        let text = "schema = 1\nname = \"t\"\ncontroller = \"klipper\"\n[converter]\npeak_power_w = 500\n\
+                    [language]\nunknown_moves = [\"START_PRINT\"]\n\
+                    [axes.X]\nrapid_mm_min = 6000\naccel_mm_s2 = 500\nmass_kg = 5\n\
+                    [[load]]\non = [\"M104\", \"M109\"]\npower_w = 40\n\
+                    [[load]]\non = [\"M140\", \"M190\"]\npower_w = 200\n\
+                    [[load]]\non = \"M106\"\noff = \"M107\"\npower_w = 5\n";
+        let (machine, _) = Machine::from_toml("t.toml", text).unwrap();
+        let mut interpreter = Interpreter::new(&machine, &Reading::default());
+        let mut found = Vec::new();
+        let mut diagnostics = Diagnostics::default();
+        for (number, line) in (1..).zip(lines) {
+            let (mut block, mut facts, mut steps) =
+                (Block::default(), Facts::default(), Vec::new());
+            scan_line(line.as_bytes(), number == 1, &mut block);
+            let effects = Effects::new(&mut steps, &mut facts, &mut diagnostics);
+            interpreter.execute(number, line.as_bytes(), &mut block, effects);
+            found.extend(steps.iter().filter_map(|step| match step {
+                Step::Move(mv) => Some(mv.loads),
+                _ => None,
+            }));
+        }
+        let noted = diagnostics.list.iter().any(|it| it.rule == "macro-heaters");
+        (found, noted)
+    }
+
+    #[test]
+    fn after_a_macro_heaters_count_as_on_until_their_target_is_0() {
+        let (found, noted) = loads(&[
+            "G1 X1 F60",
+            "START_PRINT BED=60",
+            "G1 X2",
+            "M104 S0",
+            "G1 X3",
+            "M140 S0",
+            "G1 X4",
+            "M107",
+            "G1 X5",
+        ]);
+        assert_eq!(found, [0, 7, 7, 6, 4, 4]);
+        assert!(noted);
+    }
+
+    /// `M104 S0` ends the tool in use alone, `T` the one that it names.
+    #[test]
+    fn the_target_of_one_tool_says_nothing_of_others() {
+        let (found, _) = loads(&[
+            "START_PRINT",
+            "M104 T0 S0",
+            "G1 X1 F60",
+            "T1",
+            "M104 S0",
+            "G1 X2",
+            "TURN_OFF_HEATERS",
+            "G1 X3",
+        ]);
+        assert_eq!(found, [7, 7, 7, 7, 4]);
+    }
 }

@@ -60,6 +60,10 @@ pub(super) struct State {
     tool: u32,
     /// Heaters or fans that are on, a bit for each number, for each load.
     lit: [u32; 32],
+    /// Loads that a macro may have left on, a bit for each.
+    maybe_lit: u32,
+    /// The program has named more than one tool.
+    several_tools: bool,
     /// G60.
     positions: Vec<(u32, SavedPosition)>,
     /// `SAVE_GCODE_STATE`, M120.
@@ -86,6 +90,8 @@ impl State {
             steps: [0.0; AXES],
             tool: 0,
             lit: [0; 32],
+            maybe_lit: 0,
+            several_tools: false,
             positions: Vec::new(),
             states: BTreeMap::new(),
         }

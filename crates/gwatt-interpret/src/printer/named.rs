@@ -47,6 +47,9 @@ impl Control<'_> {
             }
             run.act(ActionKind::Other, 0.0);
         } else if moves || listed(&printer.unknown_moves) {
+            if listed(&printer.may_heat) {
+                self.may_heat(run, span);
+            }
             self.unknown_moves(run, span);
         } else if shifts {
             self.shift_axes(&Parameters::new());

@@ -113,6 +113,11 @@ impl Control<'_> {
         run.act(ActionKind::ToolSelect, f64::from(tool));
         if tool != self.printer.tool {
             self.printer.tool = tool;
+            self.printer.several_tools = true;
+            let may_heat = &self.machine.controller.language.printer.may_heat;
+            if may_heat.iter().any(|one| one.is_code(b'T', number)) {
+                self.may_heat(run, span);
+            }
             self.unknown_moves(run, span);
         }
     }

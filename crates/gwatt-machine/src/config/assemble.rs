@@ -60,6 +60,9 @@ pub(crate) fn machine(
     });
     servo::factors(findings, file, &mut axes, &converters);
     plausible::drives(findings, file, &axes, &converters, &force_curves);
+    if controller.language.family.facts().printer {
+        plausible::printer(findings, file);
+    }
     let given = file
         .path
         .as_ref()

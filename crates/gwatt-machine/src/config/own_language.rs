@@ -76,5 +76,7 @@ pub(crate) fn take(
     let ignored = printer::commands(findings, own.ignored_macros.as_ref());
     printer.ignored_macros.extend(ignored);
     let moves = printer::commands(findings, own.unknown_moves.as_ref());
+    // Macros, whatever their names: nobody says what they switch.
+    printer.may_heat.extend(moves.iter().cloned());
     printer.unknown_moves.extend(moves);
 }

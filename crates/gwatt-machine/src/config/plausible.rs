@@ -23,12 +23,15 @@ struct Usual {
 
 const NONE: f64 = f64::INFINITY;
 
+/// Below this no axis is as slow, mm/min.
+const LOWEST_MM_MIN: f64 = 100.0;
+
 /// Usual values of fields as they are written.
 const FIELDS: [Usual; 12] = [
     Usual {
         key: "rapid_mm_min",
         unit: "mm/min",
-        low: 100.0,
+        low: LOWEST_MM_MIN,
         if_below: "mm/s or m/min given?",
         high: 1e6,
         if_above: "µm/s given?",
@@ -258,6 +261,25 @@ pub(crate) fn drives(
             let help = "check mass, acceleration and the curve".to_owned();
             findings.warning(RULE, &span, message, Some(help));
         }
+    }
+}
+
+/// A printer's X and Y are hardly ever as slow as this, mm/min.
+const PRINTER_MM_MIN: f64 = 600.0;
+
+/// Speeds of a printer in mm/s look like ones in mm/min, and are 60 times too low.
+pub(crate) fn printer(findings: &mut Findings<'_>, file: &MachineFile) {
+    let axes = file.axes.iter().flat_map(|axes| axes.value.iter());
+    for (_, table) in axes.filter(|(id, _)| matches!(id, AxisId::X | AxisId::Y)) {
+        let given = table.value.rapid_mm_min.as_ref();
+        let small = LOWEST_MM_MIN..PRINTER_MM_MIN;
+        let Some(speed) = given.filter(|speed| small.contains(&speed.value)) else {
+            continue;
+        };
+        let value = round(speed.value);
+        let message = format!("`rapid_mm_min`: {value} mm/min is unusually small for a printer");
+        let help = "mm/s given? 1 mm/s is 60 mm/min; powers would be too low".to_owned();
+        findings.warning(RULE, &speed.span, message, Some(help));
     }
 }
 

@@ -61,6 +61,7 @@ pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> 
         endstop_letters,
         ignored_macros: commands(findings, table.ignored_macros.as_ref()),
         unknown_moves: commands(findings, table.unknown_moves.as_ref()),
+        may_heat: commands(findings, table.may_heat.as_ref()),
         shifts: commands(findings, table.shifts.as_ref()),
     }
 }

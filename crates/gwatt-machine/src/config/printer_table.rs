@@ -44,6 +44,9 @@ pub(crate) struct PrinterTable {
     /// and acceleration, and its place is not known afterwards. They must leave
     /// feed and modes as they are.
     pub(crate) unknown_moves: Option<Vec<At<String>>>,
+    /// Those of `unknown_moves`, and tools, that may switch heaters and fans too, as a
+    /// macro or a file of the machine does. `unknown_moves` of a machine file all may.
+    pub(crate) may_heat: Option<Vec<At<String>>>,
     /// Commands that shift the coordinates: the next move of an axis counts at
     /// full speed and acceleration.
     pub(crate) shifts: Option<Vec<At<String>>>,
