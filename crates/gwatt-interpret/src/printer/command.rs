@@ -79,10 +79,6 @@ impl Control<'_> {
             text_command(run, number);
             return None;
         }
-        if letter == b'G' && matches!(number, 0 | 10 | 20 | 30) {
-            // It is read once the move before it is in the queue.
-            self.printer.pending = false;
-        }
         let (parameters, next) = match text.parameters(at) {
             Ok(found) => found,
             // Whatever its arguments, the profile says what it does.

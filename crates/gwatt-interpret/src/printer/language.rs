@@ -19,6 +19,14 @@ impl Language for PrinterLanguage {
         control.command_line(run);
     }
 
+    fn prepare(&self, control: &mut Control<'_>, run: &mut Run<'_, '_>) {
+        let mut words = run.block.words.iter();
+        if words.any(|word| word.letter == b'G' && (0.0..4.0).contains(&word.value)) {
+            // It is read once the move before it is in the queue.
+            control.printer.pending = false;
+        }
+    }
+
     /// What is not understood is a command: see [`Self::is_command`].
     fn read(
         &self,

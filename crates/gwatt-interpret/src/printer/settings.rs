@@ -379,3 +379,50 @@ impl Control<'_> {
         self.settle();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{Diagnostics, Effects, Facts, Interpreter, Reading};
+    use gwatt_machine::Machine;
+    use gwatt_motion::{ActionKind, Step};
+    use gwatt_syntax::{Block, scan_line};
+
+    /// The factors of limits that may act early, on RepRapFirmware.
+    fn early(lines: &[&str]) -> Vec<f64> {
+        let text = "schema = 1\nname = \"t\"\ncontroller = \"reprap\"\n[converter]\npeak_power_w = 500\n\
+                    [axes.X]\nrapid_mm_min = 6000\naccel_mm_s2 = 500\nmass_kg = 5\n";
+        let (machine, _) = Machine::from_toml("t.toml", text).unwrap();
+        let mut interpreter = Interpreter::new(&machine, &Reading::default());
+        let (mut found, mut diagnostics) = (Vec::new(), Diagnostics::default());
+        for (number, line) in (1..).zip(lines) {
+            let (mut block, mut facts, mut steps) =
+                (Block::default(), Facts::default(), Vec::new());
+            scan_line(line.as_bytes(), number == 1, &mut block);
+            let effects = Effects::new(&mut steps, &mut facts, &mut diagnostics);
+            interpreter.execute(number, line.as_bytes(), &mut block, effects);
+            found.extend(steps.iter().filter_map(|step| match step {
+                Step::Action(action) if action.kind == ActionKind::EarlyLimits => {
+                    Some(action.value)
+                }
+                _ => None,
+            }));
+        }
+        found
+    }
+
+    #[test]
+    fn a_line_with_a_motion_word_keeps_limits_off_the_move_before() {
+        // Nothing has moved yet; the same again changes nothing.
+        assert_eq!(early(&["M201 X400", "G1 X1 F60", "M201 X400"]), [0.0; 0]);
+        assert_eq!(early(&["G1 X1 F60", "M201 X1000"]), [2.0]);
+        assert_eq!(early(&["G1 X1 F60", "M204 P100", "M201 X250"]), [1.0, 1.0]);
+        for barrier in ["G1", "G1 F60", "G0", "N7 G1 ; wait"] {
+            assert_eq!(
+                early(&["G1 X1 F60", barrier, "M201 X1000"]),
+                [0.0; 0],
+                "{barrier}"
+            );
+        }
+        assert_eq!(early(&["G1 X1 F60", "G1", "G1 X2", "M203 X600"]), [1.0]);
+    }
+}
