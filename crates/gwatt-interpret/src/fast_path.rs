@@ -73,13 +73,8 @@ impl Control<'_> {
             (MoveKind::Rapid, f64::INFINITY)
         };
 
-        let path_accel_mm_s2 = self.path_accel(*moving);
-        let mut accel_mm_s2 = *self.knobs.accel(kind);
-        self.free_retract(*moving, path_accel_mm_s2, &mut accel_mm_s2);
-
         // From here on, it happens.
-        self.moved = true;
-        self.printer.pending = !moving.is_empty();
+        (self.moved, self.printer.pending) = (true, !moving.is_empty());
         steps.push(Step::Move(Move {
             line,
             number: block.number.map(|word| word.value),
@@ -96,8 +91,8 @@ impl Control<'_> {
             feed_mm_s,
             feed_excess: 1.0,
             feed_mode: FeedMode::PerMinute,
-            accel_mm_s2,
-            path_accel_mm_s2,
+            accel_mm_s2: self.axes_accel(kind, *moving),
+            path_accel_mm_s2: self.path_accel(*moving),
             jerk_factor: self.knobs.jerk_of(*moving),
             rapid_factor: self.knobs.rapid_factor,
             pace: 1.0,

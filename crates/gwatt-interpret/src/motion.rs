@@ -279,33 +279,19 @@ impl Control<'_> {
         let (mut rapid_factor, mut feed_excess) = (self.knobs.rapid_factor, 1.0);
         // Threads follow the spindle.
         if self.printer.adjusts && !matches!(kind, MoveKind::Thread | MoveKind::Tap) {
+            let is_line = arc.is_none() && unknown_start.is_empty();
             let course = Course {
                 end,
                 commanded: AxisSet(moving.0 | unknown_start.0),
-                length_mm: if arc.is_none() && unknown_start.is_empty() {
-                    length_mm
-                } else {
-                    0.0
-                },
+                length_mm: if is_line { length_mm } else { 0.0 },
                 unknown: !unknown_start.is_empty(),
             };
-            if given_mm_s.is_none() {
-                feed_mm_s = self.printer_feed(run, &course, feed_mm_s);
-            }
-            let capped_mm_s = self.capped(&course, feed_mm_s);
-            if capped_mm_s < feed_mm_s && feed_mm_s.is_finite() {
-                feed_excess = feed_mm_s / capped_mm_s;
-            }
-            feed_mm_s = capped_mm_s;
+            let is_given = given_mm_s.is_some();
+            (feed_mm_s, feed_excess) = self.printer_speed(run, &course, feed_mm_s, is_given);
             rapid_factor *= self.speed_factor(&course, kind == MoveKind::Rapid);
         }
         let path_accel_mm_s2 = self.path_accel(AxisSet(moving.0 | unknown_start.0));
-        let mut accel_mm_s2 = *self.knobs.accel(kind);
-        self.free_retract(
-            AxisSet(moving.0 | unknown_start.0),
-            path_accel_mm_s2,
-            &mut accel_mm_s2,
-        );
+        let mut accel_mm_s2 = self.axes_accel(kind, AxisSet(moving.0 | unknown_start.0));
         if !unknown_start.is_empty() {
             hold_to_path(self.machine, &mut accel_mm_s2, path_accel_mm_s2);
         }
@@ -391,14 +377,19 @@ impl Control<'_> {
         self.knobs.path_accel_mm_s2[slot]
     }
 
-    /// A move of the extruder alone has a limit of its own along the path.
+    /// The limits of acceleration of the axes in a move. One of the extruder alone may have
+    /// that along the path in place of its own.
     #[inline]
-    pub(super) fn free_retract(&self, moving: AxisSet, path_mm_s2: f64, accel: &mut AxisValues) {
-        let alone = moving.0 == 1 << EXTRUDER;
+    pub(super) fn axes_accel(&self, kind: MoveKind, moving: AxisSet) -> AxisValues {
+        let mut accel_mm_s2 = *self.knobs.accel(kind);
         let printer = &self.machine.controller.language.printer;
-        if alone && printer.retract_by_path && path_mm_s2.is_finite() {
-            accel[EXTRUDER] = path_mm_s2;
+        if printer.retract_by_path && moving.0 == 1 << EXTRUDER {
+            let path_mm_s2 = self.path_accel(moving);
+            if path_mm_s2.is_finite() {
+                accel_mm_s2[EXTRUDER] = path_mm_s2;
+            }
         }
+        accel_mm_s2
     }
 
     /// The path speed that F asks for, mm/s; reports an F that is missing.

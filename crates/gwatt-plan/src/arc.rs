@@ -57,12 +57,11 @@ impl AxisSpeeds {
         let raised = mv.rapid_factor.max(1.0);
         for (axis, limit) in crate::axis_limits::moving(machine, mv) {
             let speed = limit.rapid_mm_s * raised;
-            match arc.plane.iter().position(|&plane| plane == axis) {
-                Some(i) => speeds.plane_mm_s[i] = speed,
-                None => {
-                    let part = (mv.end[axis] - mv.start[axis]).abs() / mv.length_mm;
-                    speeds.across_mm_s = speeds.across_mm_s.min(speed / part);
-                }
+            if let Some(i) = arc.plane.iter().position(|&plane| plane == axis) {
+                speeds.plane_mm_s[i] = speed;
+            } else {
+                let part = (mv.end[axis] - mv.start[axis]).abs() / mv.length_mm;
+                speeds.across_mm_s = speeds.across_mm_s.min(speed / part);
             }
         }
         speeds

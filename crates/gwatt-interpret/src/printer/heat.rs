@@ -230,7 +230,7 @@ mod tests {
             interpreter.execute(number, line.as_bytes(), &mut block, effects);
             found.extend(steps.iter().filter_map(|step| match step {
                 Step::Move(mv) => Some(mv.loads),
-                _ => None,
+                Step::Action(_) => None,
             }));
         }
         let noted = diagnostics.list.iter().any(|it| it.rule == "macro-heaters");

@@ -9,13 +9,28 @@ use gwatt_machine::{AxisSet, AxisValues};
 const XY: u16 = 0b11;
 
 impl Control<'_> {
-    /// The feed of a move before the program's limits, mm/s, of which F asks for `feed_mm_s`.
-    pub(crate) fn printer_feed(
+    /// The feed of a move under the limits that the program has set, mm/s, of which F asks
+    /// for `feed_mm_s` unless it `is_given` otherwise; and by what factor it would be more
+    /// without them.
+    pub(crate) fn printer_speed(
         &self,
         run: &mut Run<'_, '_>,
         course: &Course<'_>,
         feed_mm_s: f64,
-    ) -> f64 {
+        is_given: bool,
+    ) -> (f64, f64) {
+        let asked = if is_given {
+            feed_mm_s
+        } else {
+            self.printer_feed(run, course, feed_mm_s)
+        };
+        let capped = self.capped(course, asked);
+        let held_back = capped < asked && asked.is_finite();
+        (capped, if held_back { asked / capped } else { 1.0 })
+    }
+
+    /// The feed of a move before the program's limits, mm/s, of which F asks for `feed_mm_s`.
+    fn printer_feed(&self, run: &mut Run<'_, '_>, course: &Course<'_>, feed_mm_s: f64) -> f64 {
         let state = &self.printer;
         let spares = self.machine.controller.language.printer.feed_factor_spares;
         let spared = course.commanded.0 & !spares.0 == 0;
@@ -29,7 +44,7 @@ impl Control<'_> {
     }
 
     /// A speed along the path, mm/s, under the limits that the program has set.
-    pub(crate) fn capped(&self, course: &Course<'_>, feed_mm_s: f64) -> f64 {
+    fn capped(&self, course: &Course<'_>, feed_mm_s: f64) -> f64 {
         let knobs = &self.knobs;
         let mut feed = feed_mm_s;
         if course.commanded.0 & !(1 << EXTRUDER) != 0 {

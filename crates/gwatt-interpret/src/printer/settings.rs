@@ -401,10 +401,10 @@ mod tests {
             let effects = Effects::new(&mut steps, &mut facts, &mut diagnostics);
             interpreter.execute(number, line.as_bytes(), &mut block, effects);
             found.extend(steps.iter().filter_map(|step| match step {
-                Step::Action(action) if action.kind == ActionKind::EarlyLimits => {
-                    Some(action.value)
+                Step::Action(action) => {
+                    (action.kind == ActionKind::EarlyLimits).then_some(action.value)
                 }
-                _ => None,
+                Step::Move(_) => None,
             }));
         }
         found

@@ -303,9 +303,8 @@ fn rapid_knob(findings: &mut Findings<'_>, table: &PlannerTable) -> RapidKnob {
     RapidKnob::G1
 }
 
-fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
-    let knob = &table.value;
-    let target = match knob.target? {
+fn target_of(name: TargetName) -> KnobTarget {
+    match name {
         TargetName::FeedAccel => KnobTarget::FeedAccel,
         TargetName::RapidAccel => KnobTarget::RapidAccel,
         TargetName::Accel => KnobTarget::Accel,
@@ -314,7 +313,12 @@ fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
         TargetName::Speed => KnobTarget::Speed,
         TargetName::SpeedShare => KnobTarget::SpeedShare,
         TargetName::CruiseRatio => KnobTarget::CruiseRatio,
-    };
+    }
+}
+
+fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
+    let knob = &table.value;
+    let target = target_of(knob.target?);
     let unit = match knob.unit? {
         UnitName::Percent => KnobUnit::Percent,
         UnitName::PerSecondSquared => KnobUnit::PerSecondSquared,
