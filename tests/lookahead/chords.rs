@@ -7,6 +7,7 @@ use gwatt::machine::{AXES, AxisSet, ChordRule, Machine, PathMode};
 use gwatt::plan::Overrides;
 use gwatt::plan::lookahead::{Curve, Element, Piece, Planned, chord_count};
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::fmt::Write as _;
 
 /// A machine of these speeds (mm/s), with axes that speed up by so much (mm/s²).
 fn machine(controller: &str, speeds_mm_s: [f64; 3], accel_mm_s2: f64) -> Machine {
@@ -14,7 +15,8 @@ fn machine(controller: &str, speeds_mm_s: [f64; 3], accel_mm_s2: f64) -> Machine
         "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e9\n"
     );
     for (axis, speed) in ["X", "Y", "Z"].into_iter().zip(speeds_mm_s) {
-        text += &format!(
+        let _ = write!(
+            text,
             "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = {:?}\naccel_mm_s2 = {accel_mm_s2:?}\nmass_kg = 100\n",
             speed * 60.0
         );
