@@ -105,7 +105,7 @@ fn of_printers() {
             shop.run("limit a.gcode --strategy speed --allow feed -o out.gcode");
         assert_eq!(code, 0, "{errors}");
         let text = shop.get("out.gcode");
-        let mut lines = text.lines();
+        let mut lines = text.lines().filter(|line| *line != "G1");
         assert!(
             lines.next().is_some_and(|line| line.starts_with(cap)),
             "{text}"

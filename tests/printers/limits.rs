@@ -148,7 +148,7 @@ fn limits_may_act_on_the_move_before() {
         peak_w("marlin", &program("G1\n"))
     );
     // The words that `limit` writes act where they stand.
-    let shop = Shop::mill("reprap", "peak_power_w = 600", "", "");
+    let shop = Shop::mill("reprap", "peak_power_w = 300", "", "");
     shop.put("a.gcode", "G1 X60 F3000\nG1 X0 Y50 F9000\nG1 X50 F3000\n");
     let (code, _, errors) = shop.run("limit a.gcode -o out.gcode");
     assert_eq!(code, 0, "{errors}");

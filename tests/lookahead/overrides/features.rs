@@ -98,6 +98,11 @@ fn an_arc_on_axes_that_lose_power_in_copper() {
     }
 }
 
+/// RepRapFirmware with the chords and the steps of 3.2.
+const LONG_CHORDS: &str = "rapid = \"linear\"\n[look_ahead]\n\
+    chords = { max_mm = 2, min_mm = 0.1, per_second = 50, round_up = true }\n\
+    [look_ahead.speed_step]\nstep_mm_s = { X = 15, Y = 15, Z = 0.2, E = 20 }";
+
 /// At 60 % the last line is so slow that the arc has to brake for it, though it runs faster
 /// than its curvature would permit: its chords know nothing of that.
 #[test]
@@ -107,7 +112,7 @@ fn an_arc_of_chords_that_brakes_for_a_slower_line_after_the_next() {
         ("Y", (41791.0, 536.0, 14.39, 1.7, "efficiency = 0.784")),
         ("Z", (32649.0, 923.0, 23.26, 7.3, "gravity_n = 3.91")),
     ];
-    let machine = machine("reprap", "rapid = \"linear\"", &axes);
+    let machine = machine("reprap", LONG_CHORDS, &axes);
     let program = "G1 X-3.3313 Y-16.5564 Z-5.3047 F6122.1\nG3 X-2.3377 Y-16.6766 I0.5610 J0.4707 F11446.2\n\
                    G0 X-1.7933 Y-16.2782\nG1 X108.9471 Y55.0388 F1207.5\n";
     let fed_back = |share: f64| peaks(&at(&machine, share, share), program)[1][1];
@@ -132,7 +137,7 @@ fn an_arc_whose_first_chord_is_steeper_at_a_lower_feed() {
         ),
         ("Y", (28635.0, 419.0, 5.1, 1.5, "efficiency = 0.618")),
     ];
-    let machine = machine("reprap", "rapid = \"linear\"", &axes);
+    let machine = machine("reprap", LONG_CHORDS, &axes);
     let program = "G2 X-1.1759 Y2.1683 I1.6286 J2.2863 F891.2\n";
     let drawn = |share: f64| most(&at(&machine, share, share), program)[0];
     assert!(drawn(0.25) > 1.01 * drawn(1.0));
@@ -167,7 +172,7 @@ fn a_joint_of_s_curves_that_is_passed_faster_at_a_lower_feed() {
             ),
         ),
     ];
-    let machine = machine("reprap", "rapid = \"linear\"", &axes);
+    let machine = machine("reprap", LONG_CHORDS, &axes);
     let program = "G3 X-0.7080 Y-0.2650 I0.1585 J-1.5017 F8729.4\nG1 X-0.6631 Y-1.5102 F1188.3\n";
     let fed_back = |share: f64| most(&at(&machine, share, share), program)[1];
     assert!(fed_back(0.7) > 1.2 * fed_back(1.0));
@@ -210,7 +215,7 @@ fn a_step_of_a_slow_axis_that_loses_power_in_copper() {
             ),
         ),
     ];
-    let machine = machine("reprap", "rapid = \"linear\"", &axes);
+    let machine = machine("reprap", LONG_CHORDS, &axes);
     let program = "G1 X0.3028 Y0.2080 Z0.1387 F6421.5\nG1 X0.8861 Y0.4169 Z0.0043 F18995.5\n";
     let drawn = |share: f64| most(&at(&machine, share, share), program)[0];
     assert!(drawn(0.042) > drawn(1.0));

@@ -68,10 +68,17 @@ pub(super) fn permits(rule: &CornerRule, before: &Line, after: &Line, speed_mm_s
             let step = step_mm_s[EXTRUDER];
             changes.all(|((u, w), step)| (w - u) * (w - u) * most2 <= step * step)
                 && (f - e) * (f - e) * most2 <= step * step
-                && (!same_kind_only || (e > 0.0) == (f > 0.0))
+                && (!same_kind_only || kind(u, e) == kind(w, f))
         }
         _ => false,
     }
+}
+
+/// Whether a move in this direction prints, and whether its extruder moves otherwise.
+fn kind(direction: &[f64], extruder: f64) -> [bool; 2] {
+    let moves = direction.iter().take(2).any(|change| *change != 0.0);
+    let prints = moves && extruder > 0.0;
+    [prints, extruder != 0.0 && !prints]
 }
 
 /// A joint that is to be passed at a speed.

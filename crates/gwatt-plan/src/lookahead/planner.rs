@@ -139,7 +139,7 @@ impl<T: Copy> PathPlanner<T> {
         let (mut ramp2, mut last) = (0.0, None);
         while let Some(at) = chords.advance() {
             ramp2 += 2.0 * chords.chord.accel_mm_s2 * chords.chord.length_mm;
-            let finer = chords.finer().filter(|_| self.lowers);
+            let finer = chords.finer();
             if let Some(finer) = &finer {
                 chords.chord.speed_mm_s = finer.axes_mm_s;
             }
