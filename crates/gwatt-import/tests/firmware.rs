@@ -154,14 +154,20 @@ fn marlin_settings_without_echo() {
     kind = "linear"
     rapid_mm_min = 30000         # M203 X500.00 (line 6)
     accel_mm_s2 = 500            # M201 X500.00 (line 8)
+    servo_factor_motor = 1.875   # delete it where Configuration.h has S_CURVE_ACCELERATION off
+    servo_factor_regen = 1.875   # delete it where Configuration.h has S_CURVE_ACCELERATION off
     [axes.Y]
     kind = "linear"
     rapid_mm_min = 30000         # M203 Y500.00 (line 6)
     accel_mm_s2 = 500            # M201 Y500.00 (line 8)
+    servo_factor_motor = 1.875   # delete it where Configuration.h has S_CURVE_ACCELERATION off
+    servo_factor_regen = 1.875   # delete it where Configuration.h has S_CURVE_ACCELERATION off
     [axes.Z]
     kind = "linear"
     rapid_mm_min = 300           # M203 Z5.00 (line 6)
     accel_mm_s2 = 100            # M201 Z100.00 (line 8)
+    servo_factor_motor = 1.875   # delete it where Configuration.h has S_CURVE_ACCELERATION off
+    servo_factor_regen = 1.875   # delete it where Configuration.h has S_CURVE_ACCELERATION off
     [limits]
     margin = 0.1                 # share of the peak power that is kept free
     "#);
