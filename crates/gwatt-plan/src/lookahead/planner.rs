@@ -140,7 +140,7 @@ impl<T: Copy> PathPlanner<T> {
         while let Some(at) = chords.advance() {
             ramp2 += 2.0 * chords.chord.accel_mm_s2 * chords.chord.length_mm;
             let finer = chords.finer();
-            if let Some(finer) = &finer {
+            if let Some(finer) = finer.filter(|_| self.lowers) {
                 chords.chord.speed_mm_s = finer.axes_mm_s;
             }
             self.push_corner(&chords.chord, at, chords.exit2(), finer);
