@@ -147,16 +147,6 @@ fn limits_may_act_on_the_move_before() {
         peak_w("marlin", &program("")),
         peak_w("marlin", &program("G1\n"))
     );
-    // The words that `limit` writes act where they stand.
-    let shop = Shop::mill("reprap", "peak_power_w = 300", "", "");
-    shop.put("a.gcode", "G1 X60 F3000\nG1 X0 Y50 F9000\nG1 X50 F3000\n");
-    let (code, _, errors) = shop.run("limit a.gcode -o out.gcode");
-    assert_eq!(code, 0, "{errors}");
-    let written = shop.get("out.gcode");
-    let lines: Vec<&str> = written.lines().collect();
-    let words = lines.windows(2).filter(|pair| pair[1].starts_with("M201 "));
-    assert!(words.clone().count() > 0, "{written}");
-    assert!(words.clone().all(|pair| pair[0] == "G1"), "{written}");
 }
 
 /// Marlin: M204 R alone limits moves of the extruder alone, whatever M201 says of it: 10 kg at
