@@ -382,12 +382,10 @@ impl Control<'_> {
     #[inline]
     pub(super) fn axes_accel(&self, kind: MoveKind, moving: AxisSet) -> AxisValues {
         let mut accel_mm_s2 = *self.knobs.accel(kind);
+        let path_mm_s2 = self.path_accel(moving);
         let printer = &self.machine.controller.language.printer;
-        if printer.retract_by_path && moving.0 == 1 << EXTRUDER {
-            let path_mm_s2 = self.path_accel(moving);
-            if path_mm_s2.is_finite() {
-                accel_mm_s2[EXTRUDER] = path_mm_s2;
-            }
+        if printer.retracts(moving, path_mm_s2) {
+            accel_mm_s2[EXTRUDER] = path_mm_s2;
         }
         accel_mm_s2
     }

@@ -3,9 +3,7 @@
 use super::change::Permit;
 use super::level_groups::{Groups, groups};
 use super::options::LimitOptions;
-use gwatt_machine::{
-    AxisId, AxisSet, Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath,
-};
+use gwatt_machine::{AxisSet, Knob, KnobArgument, KnobTarget, Machine, RapidKnob, RapidPath};
 use gwatt_motion::{Move, MoveKind, own_path_speed};
 
 /// What shares may differ by from rounding.
@@ -163,10 +161,7 @@ pub(super) fn speed_cap(machine: &Machine, mv: &Move, permit: &Permit) -> Option
 /// a limit that could be put back.
 fn accel_lever(machine: &Machine, mv: &Move, target: KnobTarget) -> Option<usize> {
     let printer = &machine.controller.language.printer;
-    // A limit along the path has taken the place of the extruder's own.
-    let retracts = printer.retract_by_path
-        && mv.moving.0 == 1 << AxisId::E as u16
-        && mv.path_accel_mm_s2.is_finite();
+    let retracts = printer.retracts(mv.moving, mv.path_accel_mm_s2);
     accel_knob(machine, target).filter(|index| {
         let knob = machine.controller.knobs.get(*index);
         knob.is_some_and(|knob| {

@@ -1,6 +1,6 @@
 //! What the firmwares of 3D printers differ in; the defaults are Marlin's.
 
-use super::axis::AxisSet;
+use super::axis::{AxisId, AxisSet};
 
 /// Differences within the Marlin family of words, from `[language.printer]`.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,6 +112,14 @@ impl Printer {
     #[must_use]
     pub fn limit_unit(&self, mm_per_unit: f64) -> f64 {
         if self.limits_in_mm { 1.0 } else { mm_per_unit }
+    }
+
+    /// Whether a move of these axes is limited by this acceleration along its path, mm/s², in
+    /// place of those of its axes.
+    #[must_use]
+    #[inline]
+    pub fn retracts(&self, moving: AxisSet, path_accel_mm_s2: f64) -> bool {
+        self.retract_by_path && moving.0 == 1 << AxisId::E as u16 && path_accel_mm_s2.is_finite()
     }
 }
 

@@ -289,7 +289,7 @@ pub enum ActionKind {
     /// Another M word.
     Other,
     /// Limits of the axes or of the path change, perhaps for the last move before already:
-    /// the factor by which accelerations rise at most.
+    /// the factor by which they rise at most.
     EarlyLimits,
     /// G61, G61.1, G64 (value 61, 61.1, 64).
     PathMode,

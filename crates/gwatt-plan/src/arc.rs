@@ -67,6 +67,15 @@ impl AxisSpeeds {
         speeds
     }
 
+    /// See [`axis_speed`].
+    pub fn along_path(&self, machine: &Machine, arc: &Arc) -> f64 {
+        if runs_chords(machine) {
+            self.fastest(arc)
+        } else {
+            self.all_along(largest_parts(machine, arc))
+        }
+    }
+
     /// Path speed that is permitted all along the arc, of which its axes have these parts
     /// at most.
     fn all_along(&self, parts: [f64; 2]) -> f64 {
@@ -106,12 +115,7 @@ fn meets(arc: &Arc, heading_rad: f64) -> bool {
 /// Path speed that the axes' own speeds permit: all along the arc, or of its fastest chord
 /// where the controller runs it as chords.
 pub(super) fn axis_speed(machine: &Machine, mv: &Move, arc: &Arc) -> f64 {
-    let speeds = AxisSpeeds::of(machine, mv, arc);
-    if runs_chords(machine) {
-        speeds.fastest(arc)
-    } else {
-        speeds.all_along(largest_parts(machine, arc))
-    }
+    AxisSpeeds::of(machine, mv, arc).along_path(machine, arc)
 }
 
 /// Whether the controller runs arcs as chords.

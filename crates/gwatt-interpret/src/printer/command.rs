@@ -7,7 +7,7 @@ use crate::control::{Control, Run};
 use crate::knob::KnobState;
 use crate::report::Report;
 use crate::tools::ToolLength;
-use gwatt_machine::{Command, ExtruderMode};
+use gwatt_machine::{Command, ExtruderMode, Machine};
 use gwatt_motion::{ActionKind, Step};
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, Word};
@@ -34,7 +34,10 @@ impl Control<'_> {
             let limits = early.then(|| self.knobs.clone());
             let next = self.one_command(run, text, index > 0);
             if let Some(before) = limits.filter(|before| *before != self.knobs) {
-                run.act(ActionKind::EarlyLimits, rise(&before, &self.knobs));
+                run.act(
+                    ActionKind::EarlyLimits,
+                    rise(self.machine, &before, &self.knobs),
+                );
             }
             let moves = |steps: &[Step]| steps.iter().any(|step| matches!(step, Step::Move(_)));
             let (earlier, own) = run.steps.split_at_checked(so_far).unwrap_or_default();
@@ -401,19 +404,26 @@ fn flags_of_a_move(run: &mut Run<'_, '_>, parameters: &Parameters) {
     }
 }
 
-/// By what factor limits of acceleration rise at most.
-fn rise(before: &KnobState, after: &KnobState) -> f64 {
+/// By what factor limits of acceleration or of speed rise at most.
+fn rise(machine: &Machine, before: &KnobState, after: &KnobState) -> f64 {
     let pairs = [
         (&before.feed_accel_mm_s2[..], &after.feed_accel_mm_s2[..]),
         (&before.rapid_accel_mm_s2[..], &after.rapid_accel_mm_s2[..]),
         (&before.path_accel_mm_s2[..], &after.path_accel_mm_s2[..]),
     ];
-    let factors = pairs.into_iter().flat_map(|(before, after)| {
+    let accels = pairs.into_iter().flat_map(|(before, after)| {
         let both = before.iter().zip(after);
         both.filter(|(before, _)| **before > 0.0 && before.is_finite())
             .map(|(before, after)| after / before)
     });
-    factors.fold(1.0, f64::max)
+    let speeds = machine.axis_set.iter().map(|axis| {
+        // Infinite is the machine's own.
+        let own = machine.axes[axis].map_or(f64::INFINITY, |axis| axis.rapid_mm_s);
+        let [before, after] = [before, after].map(|it| it.speed_mm_s[axis]);
+        let cap = |speed: f64| if speed.is_finite() { speed } else { own };
+        cap(after) / cap(before)
+    });
+    accels.chain(speeds).fold(1.0, f64::max)
 }
 
 /// What is known to be left out of the estimate.

@@ -205,36 +205,22 @@ fn note_heaters(run: &mut Run<'_, '_>, span: Span) {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Diagnostics, Effects, Facts, Interpreter, Reading};
-    use gwatt_machine::Machine;
+    use crate::printer::testing::execute;
     use gwatt_motion::Step;
-    use gwatt_syntax::{Block, scan_line};
 
     /// The loads under which each line moves, nozzle 1, bed 2, fan 4, and whether the note stands.
     fn loads(lines: &[&str]) -> (Vec<u32>, bool) {
-        let text = "schema = 1\nname = \"t\"\ncontroller = \"klipper\"\n[converter]\npeak_power_w = 500\n\
-                    [language]\nunknown_moves = [\"START_PRINT\"]\n\
-                    [axes.X]\nrapid_mm_min = 6000\naccel_mm_s2 = 500\nmass_kg = 5\n\
+        let rest = "[language]\nunknown_moves = [\"START_PRINT\"]\n\
                     [[load]]\non = [\"M104\", \"M109\"]\npower_w = 40\n\
                     [[load]]\non = [\"M140\", \"M190\"]\npower_w = 200\n\
                     [[load]]\non = \"M106\"\noff = \"M107\"\npower_w = 5\n";
-        let (machine, _) = Machine::from_toml("t.toml", text).unwrap();
-        let mut interpreter = Interpreter::new(&machine, &Reading::default());
-        let mut found = Vec::new();
-        let mut diagnostics = Diagnostics::default();
-        for (number, line) in (1..).zip(lines) {
-            let (mut block, mut facts, mut steps) =
-                (Block::default(), Facts::default(), Vec::new());
-            scan_line(line.as_bytes(), number == 1, &mut block);
-            let effects = Effects::new(&mut steps, &mut facts, &mut diagnostics);
-            interpreter.execute(number, line.as_bytes(), &mut block, effects);
-            found.extend(steps.iter().filter_map(|step| match step {
-                Step::Move(mv) => Some(mv.loads),
-                Step::Action(_) => None,
-            }));
-        }
+        let (steps, diagnostics) = execute("klipper", rest, lines);
+        let moves = steps.iter().filter_map(|step| match step {
+            Step::Move(mv) => Some(mv.loads),
+            Step::Action(_) => None,
+        });
         let noted = diagnostics.list.iter().any(|it| it.rule == "macro-heaters");
-        (found, noted)
+        (moves.collect(), noted)
     }
 
     #[test]

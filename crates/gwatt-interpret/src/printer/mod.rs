@@ -17,6 +17,8 @@ mod position;
 mod retract;
 mod scale;
 mod settings;
+#[cfg(test)]
+mod testing;
 
 use crate::rules::rules_of;
 use std::collections::BTreeMap;

@@ -382,32 +382,18 @@ impl Control<'_> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Diagnostics, Effects, Facts, Interpreter, Reading};
-    use gwatt_machine::Machine;
+    use crate::printer::testing::execute;
     use gwatt_motion::{ActionKind, Step};
-    use gwatt_syntax::{Block, scan_line};
 
     /// The factors of limits that may act early, on RepRapFirmware.
     fn early(lines: &[&str]) -> Vec<f64> {
-        let text = "schema = 1\nname = \"t\"\ncontroller = \"reprap\"\n[converter]\npeak_power_w = 500\n\
-                    [axes.X]\nrapid_mm_min = 6000\naccel_mm_s2 = 500\nmass_kg = 5\n";
-        let (machine, _) = Machine::from_toml("t.toml", text).unwrap();
-        let mut interpreter = Interpreter::new(&machine, &Reading::default());
-        let (mut found, mut diagnostics) = (Vec::new(), Diagnostics::default());
-        for (number, line) in (1..).zip(lines) {
-            let (mut block, mut facts, mut steps) =
-                (Block::default(), Facts::default(), Vec::new());
-            scan_line(line.as_bytes(), number == 1, &mut block);
-            let effects = Effects::new(&mut steps, &mut facts, &mut diagnostics);
-            interpreter.execute(number, line.as_bytes(), &mut block, effects);
-            found.extend(steps.iter().filter_map(|step| match step {
-                Step::Action(action) => {
-                    (action.kind == ActionKind::EarlyLimits).then_some(action.value)
-                }
-                Step::Move(_) => None,
-            }));
-        }
-        found
+        let (steps, _) = execute("reprap", "", lines);
+        let actions = steps.iter().filter_map(|step| match step {
+            Step::Action(action) => Some(action),
+            Step::Move(_) => None,
+        });
+        let early = actions.filter(|action| action.kind == ActionKind::EarlyLimits);
+        early.map(|action| action.value).collect()
     }
 
     #[test]
@@ -424,5 +410,8 @@ mod tests {
             );
         }
         assert_eq!(early(&["G1 X1 F60", "G1", "G1 X2", "M203 X600"]), [1.0]);
+        // The machine's own 6000 mm/min, and three times as much.
+        assert_eq!(early(&["M203 X600", "G1 X1 F60", "M203 X18000"]), [30.0]);
+        assert_eq!(early(&["G1 X1 F60", "M203 X18000"]), [3.0]);
     }
 }

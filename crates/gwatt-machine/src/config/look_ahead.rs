@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::findings::Findings;
-use super::value::{At, AtLeastOne, NotNegative, Num, Part, PerAxis, Positive};
+use super::value::{At, AtLeastOne, Fraction, NotNegative, Num, Part, PerAxis, Positive};
 use crate::axis::{AXES, AxisValues};
 use crate::controller::Planner;
 use crate::look_ahead::{ChordRule, CornerAngle, CornerRule, LookAhead};
@@ -119,7 +119,7 @@ pub(crate) struct ChordsTable {
     pub(crate) round_up: Option<bool>,
     /// The part of a chord from which on the number is rounded up, 0 to 1, in place of
     /// `round_up`.
-    pub(crate) more_from: Option<NotNegative>,
+    pub(crate) more_from: Option<Fraction>,
     /// Whether a chord, while nothing waits after it, may be left at the speed from which
     /// the rest of the arc is enough to stop; default false.
     pub(crate) safe_exit: Option<bool>,
@@ -315,7 +315,7 @@ fn chords(table: &ChordsTable, base: Option<ChordRule>) -> ChordRule {
         per_second: or(table.per_second.as_ref(), base.per_second),
         per_circle: or(table.per_circle.as_ref(), base.per_circle),
         more_from: match (&table.more_from, table.round_up) {
-            (Some(part), _) => part.value.min(1.0),
+            (Some(part), _) => part.value,
             (None, Some(up)) => f64::from(u8::from(!up)),
             (None, None) => base.more_from,
         },

@@ -14,7 +14,7 @@ use jerk::JerkJoint;
 use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
 use super::element::{Element, Joint};
-use super::passage::Passage;
+use super::passage::{Kind, Passage, kind};
 use gwatt_machine::{AXES, AxisValues, CornerAngle, CornerRule};
 
 /// Cosines beyond this are no corner, or a reversal.
@@ -42,7 +42,7 @@ pub(super) struct Before {
     ramp2: f64,
     /// Squared speed at which it could begin from rest.
     rest2: f64,
-    prints: Prints,
+    kind: Kind,
     /// See [`After`].
     square2: f64,
 }
@@ -70,23 +70,8 @@ impl Before {
         own2.max(speed2(rule, &tangent, after, most2))
     }
 
-    /// The same at any lower override, if it may be more.
-    pub fn lower_joint2<T>(&self, rule: &CornerRule, after: &After<'_, T>) -> Option<f64> {
-        self.jerk_joint(rule, after)?.lower_speed2()
-    }
-
-    /// The squared speed at which the element after the joint begins where that is faster
-    /// than this one ends.
-    pub fn begins2<T>(&self, rule: &CornerRule, after: &After<'_, T>) -> Option<f64> {
-        self.jerk_joint(rule, after)?.begins2()
-    }
-
-    /// The same at this override and at any lower one.
-    pub fn lower_begins2<T>(&self, rule: &CornerRule, after: &After<'_, T>) -> Option<f64> {
-        self.jerk_joint(rule, after)?.lower_begins2()
-    }
-
-    fn jerk_joint<'a, T>(
+    /// The joint with the element after it, under the rule of classic jerk.
+    pub fn jerk_joint<'a, T>(
         &'a self,
         rule: &'a CornerRule,
         after: &After<'a, T>,
@@ -105,9 +90,6 @@ impl Before {
     }
 }
 
-/// Whether the extruder feeds while X or Y move, and whether it moves otherwise.
-type Prints = (bool, bool);
-
 /// The element after a joint.
 #[derive(Debug)]
 pub(super) struct After<'e, T> {
@@ -119,7 +101,7 @@ pub(super) struct After<'e, T> {
     /// Squared speed at which motion may begin from rest.
     pub rest2: f64,
     /// Of interest to [`CornerRule::SpeedStep`] alone.
-    prints: Prints,
+    kind: Kind,
     /// Squared speed at a right angle, less where its acceleration is below what counts
     /// for all paths; of interest to [`CornerRule::SquareCorner`] alone.
     square2: f64,
@@ -136,14 +118,9 @@ impl<'e, T> After<'e, T> {
             }
             _ => 0.0,
         };
-        let prints = match rule {
-            CornerRule::SpeedStep { .. } => {
-                let moves = element.start.iter().take(2).any(|change| *change != 0.0);
-                let extrudes = element.start[EXTRUDER];
-                let prints = moves && extrudes > 0.0;
-                (prints, extrudes != 0.0 && !prints)
-            }
-            _ => (false, false),
+        let kind = match rule {
+            CornerRule::SpeedStep { .. } => kind(&element.start, element.start[EXTRUDER]),
+            _ => Kind::default(),
         };
         let square2 = match rule {
             CornerRule::SquareCorner { velocity_mm_s, .. } => {
@@ -159,7 +136,7 @@ impl<'e, T> After<'e, T> {
             span,
             is_unit: is_unit(&element.start),
             rest2,
-            prints,
+            kind,
             square2,
         }
     }
@@ -185,7 +162,7 @@ impl<'e, T> After<'e, T> {
             },
             ramp2: element.length_mm * element.accel_mm_s2,
             rest2: self.rest2,
-            prints: self.prints,
+            kind: self.kind,
             square2: self.square2,
         }
     }
@@ -439,7 +416,7 @@ fn step<T>(
     after: &After<'_, T>,
     span: usize,
 ) -> f64 {
-    if same_kind_only && before.prints != after.prints {
+    if same_kind_only && before.kind != after.kind {
         return 0.0;
     }
     let mut v = f64::INFINITY;

@@ -265,7 +265,7 @@ impl<T> Element<T> {
             }
         }
         let speeds = arc::AxisSpeeds::of(machine, mv, of);
-        self.speed_mm_s = arc::axis_speed(machine, mv, of);
+        self.speed_mm_s = speeds.along_path(machine, of);
         self.curve_speed_mm_s = arc::limits(machine, mv, of, &Caps::default()).speed_mm_s;
         self.curve = Some(Curve {
             plane: of.plane,

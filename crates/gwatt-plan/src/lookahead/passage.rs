@@ -75,7 +75,11 @@ pub(super) fn permits(rule: &CornerRule, before: &Line, after: &Line, speed_mm_s
 }
 
 /// Whether a move in this direction prints, and whether its extruder moves otherwise.
-fn kind(direction: &[f64], extruder: f64) -> [bool; 2] {
+pub(super) type Kind = [bool; 2];
+
+/// That of a move: it prints where the extruder feeds while X or Y move.
+#[inline]
+pub(super) fn kind(direction: &[f64], extruder: f64) -> Kind {
     let moves = direction.iter().take(2).any(|change| *change != 0.0);
     let prints = moves && extruder > 0.0;
     [prints, extruder != 0.0 && !prints]

@@ -224,16 +224,18 @@ impl<T: Copy> PathPlanner<T> {
             let tangent = Element { start, ..*element };
             node.entry2 = node.entry2.max(joint2(&After::new(rule, &tangent)));
         }
-        let lower2 = before.as_ref().filter(|_| self.lowers);
-        let lower2 = lower2.and_then(|before| before.lower_joint2(rule, &after));
-        if let Some(lower2) = lower2.filter(|lower2| *lower2 > node.entry2) {
-            // Where it is not passed faster, the joint is still slower than that.
-            (node.entry2, node.payload.certain) = (lower2, false);
-        }
-        if let Some(before) = before.as_ref().filter(|_| node.entry2 > 0.0) {
-            node.begins2 = before.begins2(rule, &after).unwrap_or(0.0);
-            let lower2 = before.lower_begins2(rule, &after);
-            node.payload.slack.begins2 = lower2.filter(|_| self.lowers).unwrap_or(0.0);
+        let jerk = before.as_ref().and_then(|it| it.jerk_joint(rule, &after));
+        if let Some(joint) = jerk {
+            let lower2 = joint.lower_speed2().filter(|_| self.lowers);
+            if let Some(lower2) = lower2.filter(|lower2| *lower2 > node.entry2) {
+                // A lower override may let it be passed as fast as that: how is not followed.
+                (node.entry2, node.payload.certain) = (lower2, false);
+            }
+            if node.entry2 > 0.0 {
+                node.begins2 = joint.begins2().unwrap_or(0.0);
+                let lower2 = joint.lower_begins2().filter(|_| self.lowers);
+                node.payload.slack.begins2 = lower2.unwrap_or(0.0);
+            }
         }
         if node.entry2 == 0.0 {
             self.window.stop();

@@ -316,8 +316,8 @@ impl Ahead {
         self.in_doubt |= !(self.at_rest || self.rests());
     }
 
-    /// New limits may hold for the last move already: its accelerations may be higher by this
-    /// factor, and it may be as fast as F asks.
+    /// New limits may hold for the last move already: they may be higher by this factor, and
+    /// it may be as fast as F asks.
     pub fn doubt_limits(&mut self, model: &PowerModel, observer: &mut Observer, factor: f64) {
         if self.at_rest || self.rests() {
             return;
@@ -327,6 +327,7 @@ impl Ahead {
         if let Some(last) = self.open.back_mut() {
             last.mv.accel_mm_s2 = last.mv.accel_mm_s2.map(|limit| factor * limit);
             last.mv.path_accel_mm_s2 *= factor;
+            last.mv.rapid_factor = factor * last.mv.rapid_factor.max(1.0);
             last.mv.feed_mm_s *= std::mem::replace(&mut last.mv.feed_excess, 1.0);
         }
     }

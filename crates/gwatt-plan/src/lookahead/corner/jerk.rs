@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// A joint; of each pair the side before comes first.
 #[derive(Debug)]
-pub(super) struct JerkJoint<'a> {
+pub(in crate::lookahead) struct JerkJoint<'a> {
     /// The largest steps of the axes that move, mm/s.
     pub steps: &'a [f64],
     pub exit: &'a AxisValues,
@@ -177,9 +177,9 @@ mod tests {
 
     #[test]
     fn a_step_up_counts_from_the_lower_speed_to_the_higher() {
-        // X goes on by 30° at 100 after 80, with F of 100: 80 is all that X may do.
-        let (first, second) = (heading(0.0), heading(0.0));
-        let joint = joint(&[10.0, 10.0], [&first, &second], [80.0, 1e3], [100.0; 2]);
+        // Straight on with F of 100, of which the first move's axes permit 80.
+        let along_x = heading(0.0);
+        let joint = joint(&[10.0, 10.0], [&along_x; 2], [80.0, 1e3], [100.0; 2]);
         // 80 to 100 is a step of 20: half of the speed.
         assert!((joint.speed2() - 1600.0).abs() < 1e-9, "{}", joint.speed2());
         // At 80 % both are 80, and there is none.
