@@ -369,7 +369,7 @@ impl<'m, 'r> Verdict<'m, 'r> {
     /// (b): the step must be the original's next one.
     fn compare_step(&mut self, step: &Step, text: &[u8]) {
         self.pass_spindle();
-        if step.is_feed_note() {
+        if step.is_note() {
             return;
         }
         let original = self.originals.get(self.done).map(|original| &*original);

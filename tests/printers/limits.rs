@@ -147,6 +147,14 @@ fn limits_may_act_on_the_move_before() {
         peak_w("marlin", &program("")),
         peak_w("marlin", &program("G1\n"))
     );
+    // What may be is no change that `limit` has made.
+    let shop = Shop::mill("reprap", "peak_power_w = 300", "", "");
+    shop.put(
+        "a.gcode",
+        "M201 X1000 Y1000\nG1 X60 F9000\nM201 X2000\nG1 X0 F1200\nM201 X1500\nG1 X20\n",
+    );
+    let (_, _, errors) = shop.run("limit a.gcode --allow feed -o out.gcode");
+    assert!(!errors.contains("fault of gwatt"), "{errors}");
 }
 
 /// Marlin: M204 R alone limits moves of the extruder alone, whatever M201 says of it: 10 kg at

@@ -24,11 +24,12 @@ impl Step {
         matches!(self, Self::Move(mv) if mv.moves_axes())
     }
 
-    /// Whether it only reports a word of the feed, which need not stand in a limited
-    /// program as it does in the original.
+    /// Whether it only reports what limits the moves, a word of the feed or limits that may
+    /// act early: these need not stand in a limited program as they do in the original.
     #[must_use]
-    pub fn is_feed_note(&self) -> bool {
-        matches!(self, Self::Action(action) if action.kind == ActionKind::Feed)
+    pub fn is_note(&self) -> bool {
+        matches!(self, Self::Action(action)
+            if matches!(action.kind, ActionKind::Feed | ActionKind::EarlyLimits))
     }
 }
 

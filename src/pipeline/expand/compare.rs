@@ -86,9 +86,7 @@ impl Steps<'_, '_> {
             let counts = |step: &Step| match step {
                 Step::Move(mv) => mv.length_mm > ROUNDING_MM || mv.kind == MoveKind::Dwell,
                 // The moves themselves show them.
-                Step::Action(action) => {
-                    !matches!(action.kind, ActionKind::Feed | ActionKind::PathMode)
-                }
+                Step::Action(action) => !step.is_note() && action.kind != ActionKind::PathMode,
             };
             self.waiting.extend(line.steps.drain(..).filter(counts));
         }

@@ -180,7 +180,7 @@ impl<'m, 'p> Original<'m, 'p> {
                 }
                 expected.push(match (&held.step, held.assessment) {
                     (Step::Move(mv), Some(assessment)) => self.expect(mv, &held, &assessment),
-                    (Step::Action(_), _) if held.step.is_feed_note() => continue,
+                    (Step::Action(_), _) if held.step.is_note() => continue,
                     (Step::Action(action), _) => Expected::Action(*action),
                     (Step::Move(_), None) => continue,
                 });

@@ -25,7 +25,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
         let mut decided = list.iter_mut();
         for step in &entry.steps {
             let mv = match step {
-                Step::Action(_) if step.is_feed_note() => continue,
+                Step::Action(_) if step.is_note() => continue,
                 Step::Action(action) => {
                     self.batch.expected.push(Expected::Action(*action));
                     continue;

@@ -166,7 +166,7 @@ impl Open {
     ) {
         let ends_mm_s = adjacent.map(|adjacent| match adjacent {
             _ if doubtful => f64::INFINITY,
-            Some(adjacent) => blended_speed(machine, &unpaced(&adjacent.mv), largest),
+            Some(adjacent) => blended_speed(machine, &unpaced(adjacent.at_most()), largest),
             None => 0.0,
         });
         self.drive(ends_mm_s, machine, model, largest);
@@ -269,7 +269,7 @@ impl Open {
     ) -> [SpeedBound; 3] {
         // A change of pace is part of what is not known.
         [before.unwrap_or(self), self, next.unwrap_or(self)]
-            .map(|open| blended_bound(machine, &unpaced(&open.mv), largest))
+            .map(|open| blended_bound(machine, &unpaced(open.at_most()), largest))
     }
 
     fn window<'a>(
@@ -279,7 +279,7 @@ impl Open {
     ) -> [Part<'a>; 3] {
         let part = |bound, open: &'a Self| Part {
             bound,
-            accel_mm_s2: &open.mv.accel_mm_s2,
+            accel_mm_s2: &open.at_most().accel_mm_s2,
         };
         [
             part(first, before.unwrap_or(self)),

@@ -325,10 +325,12 @@ impl Ahead {
         self.doubt();
         self.brake_in_doubt(model, observer);
         if let Some(last) = self.open.back_mut() {
-            last.mv.accel_mm_s2 = last.mv.accel_mm_s2.map(|limit| factor * limit);
-            last.mv.path_accel_mm_s2 *= factor;
-            last.mv.rapid_factor = factor * last.mv.rapid_factor.max(1.0);
-            last.mv.feed_mm_s *= std::mem::replace(&mut last.mv.feed_excess, 1.0);
+            let mut early = last.at_most().clone();
+            early.accel_mm_s2 = early.accel_mm_s2.map(|limit| factor * limit);
+            early.path_accel_mm_s2 *= factor;
+            early.rapid_factor = factor * early.rapid_factor.max(1.0);
+            early.feed_mm_s *= std::mem::replace(&mut early.feed_excess, 1.0);
+            last.early = Some(Box::new(early));
         }
     }
 

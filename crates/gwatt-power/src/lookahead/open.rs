@@ -36,6 +36,8 @@ pub(super) struct Open {
     pub glided: Glided,
     /// Its pieces over time, where they are looked at.
     pub kept: Buffered,
+    /// The same move under limits that may hold for it already.
+    pub early: Option<Box<Move>>,
 }
 
 /// How a move takes part.
@@ -68,7 +70,13 @@ impl Open {
             pace: Pace::default(),
             glided: Glided::default(),
             kept: Buffered::default(),
+            early: None,
         }
+    }
+
+    /// The move under the highest limits that may hold for it.
+    pub fn at_most(&self) -> &Move {
+        self.early.as_deref().unwrap_or(&self.mv)
     }
 
     /// The same in place.
@@ -84,6 +92,7 @@ impl Open {
         (self.alone, self.steady) = (true, true);
         (self.in_doubt, self.rests, self.moves) = (false, false, false);
         self.kept.clear();
+        self.early = None;
     }
 }
 
