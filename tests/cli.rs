@@ -369,6 +369,9 @@ fn formats_hold_every_program() {
     assert_eq!(sarif["runs"][0]["results"][0]["ruleId"], "peak-power");
     let junit = check("junit");
     assert!(junit.contains(r#"tests="3" skipped="0" failures="1" errors="1""#));
+    // Rules that `gwatt explain` knows, as in SARIF.
+    assert!(junit.contains(r#"type="peak-power""#), "{junit}");
+    assert!(!junit.contains(r#"type="refused""#), "{junit}");
     let github = check("github");
     assert!(github.contains("::error file=steep.ngc,line=2,title=peak-power::"));
     assert!(github.ends_with("::notice title=gwatt::1 fit, 1 do not fit, 1 refused\n"));

@@ -8,10 +8,12 @@ use std::time::Duration;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use super::checked::{Checked, Verdict};
+use super::finding::{PEAK_POWER, REGEN_POWER, is_regenerative};
 use super::style::Style;
 use super::text::check_text;
+use crate::diagnostic::Severity;
 use crate::machine::Machine;
-use crate::pipeline::Failure;
+use crate::pipeline::{Failure, Summary};
 
 /// Writes one suite, named after the machine.
 ///
@@ -36,15 +38,15 @@ fn test_case(checked: &Checked, machine: &Machine) -> TestCase {
             status
         }
         Ok(_) if checked.verdict() == Verdict::Fits => TestCaseStatus::success(),
-        Ok(_) => {
+        Ok(summary) => {
             let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-            status.set_message(title).set_type("power");
+            status.set_message(title).set_type(unfit_rule(summary));
             status.set_description(text);
             status
         }
         Err(failure) => {
             let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
-            status.set_message(title).set_type("refused");
+            status.set_message(title).set_type(refused_rule(failure));
             status.set_description(refusal(&checked.program, failure, &text));
             status
         }
@@ -57,6 +59,29 @@ fn test_case(checked: &Checked, machine: &Machine) -> TestCase {
         case.set_time(time);
     }
     case
+}
+
+/// The rule of what does not fit first, as `gwatt explain` knows it.
+fn unfit_rule(summary: &Summary) -> &'static str {
+    let missed = || {
+        let mut limits = summary.over_time.iter();
+        limits.find(|limit| limit.rating.is_missed())
+    };
+    match (summary.unfit.first(), missed()) {
+        (Some(unfit), _) if is_regenerative(unfit) => REGEN_POWER,
+        (None, Some(limit)) => limit.rating.measure.name(),
+        _ => PEAK_POWER,
+    }
+}
+
+/// The rule of the first error.
+fn refused_rule(failure: &Failure) -> &'static str {
+    let Failure::Refused { diagnostics, .. } = failure else {
+        return "refused";
+    };
+    let mut errors = diagnostics.iter();
+    let first = errors.find(|it| it.severity == Severity::Error);
+    first.map_or("refused", |it| it.rule)
 }
 
 /// Every diagnostic with the line under it.
