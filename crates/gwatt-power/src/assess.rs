@@ -65,6 +65,10 @@ impl<'m> Assessor<'m> {
     pub fn new(machine: &'m Machine, requested: Option<Certificate>, want: Want) -> Self {
         let [largest, nominal] = Overrides::of(machine);
         let model = PowerModel::new(machine);
+        let requested = match machine.kinematics.shares_motors() {
+            true => Some(Certificate::Robust),
+            false => requested,
+        };
         let rules = machine.controller.planner.look_ahead;
         let rules = rules.filter(|_| requested != Some(Certificate::Robust));
         let ahead = rules

@@ -5,8 +5,8 @@ use super::machine_file::{LimitsTable, MachineFile, PathTable};
 use super::path_name::{path_mode, rapid_path};
 use super::value::{Num, Number, PerAxis};
 use super::{
-    axis, converter, drive_curve, levels, look_ahead, offsets, outputs, own_language, parts,
-    path_accel, plausible, preset, response, servo, spindle, switched_load, tool,
+    axis, converter, drive_curve, kinematics, levels, look_ahead, offsets, outputs, own_language,
+    parts, path_accel, plausible, preset, response, servo, spindle, switched_load, tool,
 };
 use crate::MassPart;
 use crate::axis::{AXES, Axis, AxisId, AxisSet};
@@ -84,8 +84,10 @@ pub(crate) fn machine(
         .as_ref()
         .and_then(|table| spindle::spindle(findings, table, &converters, &controller));
     let tools = tool::tools(findings, file);
+    let kinematics = kinematics::take(findings, file, &axes, &force_curves, &converters);
     let machine = Machine {
         name: file.name.as_ref()?.value.clone(),
+        kinematics,
         path,
         controller,
         axes,
