@@ -37,6 +37,9 @@ pub struct Machine {
     /// Work offsets that the control keeps, by the number of the system (G54 is 1, G59.3 is
     /// 9); `None` where none are given. Machine coordinates of its zero.
     pub offsets: [Option<AxisValues>; 9],
+    /// Where G28 and G30 lead, by axis, in machine coordinates, on controls that keep these
+    /// points among their parameters; `None` where it is not given.
+    pub points: [[Option<f64>; AXES]; 2],
     /// Limits for combinations of axes.
     pub presets: Vec<Preset>,
     /// Margin, overrides and floors.

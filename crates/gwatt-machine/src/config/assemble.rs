@@ -84,6 +84,9 @@ pub(crate) fn machine(
         .as_ref()
         .and_then(|table| spindle::spindle(findings, table, &converters, &controller));
     let tools = tool::tools(findings, file);
+    let points = file.offsets.as_ref().map_or([[None; AXES]; 2], |table| {
+        offsets::points(findings, &table.value, axis_set, &controller)
+    });
     let kinematics = kinematics::take(findings, file, &axes, &force_curves, &converters);
     let machine = Machine {
         name: file.name.as_ref()?.value.clone(),
@@ -102,6 +105,7 @@ pub(crate) fn machine(
         offsets: file.offsets.as_ref().map_or([None; 9], |table| {
             offsets::offsets(findings, &table.value, axis_set)
         }),
+        points,
         presets: preset::presets(findings, file, &axes, axis_set),
         limits,
     };
