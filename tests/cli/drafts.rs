@@ -15,7 +15,7 @@ fn what_is_known_becomes_a_machine_file() {
     let shop = Shop::new();
     let ran = shop.run(&[&MILL[..], &["--axis", Z, "--name", "The \"old\" mill"]].concat());
     assert_eq!(ran.code, 0, "{}", ran.stderr);
-    insta::assert_snapshot!(ran.stdout, @r##"
+    insta::assert_snapshot!(ran.stdout, @r#"
     # The "old" mill, made by `gwatt machine new`
     #
     # What the axes come to:
@@ -28,6 +28,7 @@ fn what_is_known_becomes_a_machine_file() {
     # Not given:
     # * no controller given: programs are read as iso (`gwatt machine list` has all)
     # * nothing given of what the supply takes back: what braking axes feed back is not checked
+    # * no spindle given: its power does not count
     # * no base load given: counted as 0 W
     schema = 1
     name = "The \"old\" mill"
@@ -60,7 +61,7 @@ fn what_is_known_becomes_a_machine_file() {
 
     [limits]
     margin = 0.1                 # share of the peak power that is kept free
-    "##);
+    "#);
     insta::assert_snapshot!(ran.stderr, @r##"
     gwatt: note: no controller given: programs are read as iso (`gwatt machine list` has all)
     gwatt: note: nothing given of what the supply takes back: what braking axes feed back is not checked
@@ -137,15 +138,16 @@ fn what_is_missing_is_said_once() {
         "machine", "new", "--kind", "router", "--supply", "100", "--axis", x, "--axis", z,
     ]);
     assert_eq!(ran.code, 0);
-    insta::assert_snapshot!(ran.stderr, @r##"
+    insta::assert_snapshot!(ran.stderr, @r"
     gwatt: note: no controller given: programs are read as grbl (`gwatt machine list` has all)
     gwatt: note: nothing given of what the supply takes back: what braking axes feed back is not checked
+    gwatt: note: no spindle given: its power does not count
     gwatt: note: no base load given: counted as 0 W
     gwatt: note: XZ: no rotor inertia given: counted as 0 kg m2, which is right for linear motors alone
-    gwatt: note: XZ: no friction given: counted as 0 N; real axes have some, which `gwatt identify` finds
+    gwatt: note: XZ: no friction given: counted as none; it often takes 2 to 10 % of the largest force, and `gwatt identify` finds it
     gwatt: note: XZ: no efficiency given: counted as 1; the drive's losses come on top
     gwatt: note: Z: no counterweight given: the whole weight counts
-    "##);
+    ");
 }
 
 #[test]
@@ -202,9 +204,16 @@ fn every_message_about_an_axis() {
     };
     axis(
         "A:rapid_mm_min=1",
-        "axis `A`: its letter is one of XYZUVW; machine files describe axes",
+        "axis `A`: `rapid_mm_min` is not known; there are rapid_deg_min, ",
     );
-    axis("XY", "axis `XY`: its letter is one of XYZUVW");
+    axis(
+        "E:rapid_mm_min=1",
+        "axis `E`: the letter of an axis of a mill is one of XYZUVWABC",
+    );
+    axis(
+        "XY",
+        "axis `XY`: the letter of an axis of a mill is one of XYZUVWABC",
+    );
     axis(
         "X:rapid_mm_min",
         "axis `X`: `rapid_mm_min` has no value: write rapid_mm_min=…",
@@ -456,7 +465,31 @@ fn a_whole_printer_becomes_a_machine_file() {
     let ran = shop.run(&printer);
     assert_eq!(ran.code, 0, "{}", ran.stderr);
     let (_, parts) = ran.stdout.split_once("[axes.E]").unwrap();
-    insta::assert_snapshot!(parts, @"");
+    insta::assert_snapshot!(parts, @r#"
+kind = "linear"
+rapid_mm_min = 3000
+accel_mm_s2 = 800
+moved_mass_kg = 0.001        # the filament, which weighs next to nothing
+rotor_kg_m2 = 0.0000054
+lead_mm = 33.683             # filament per revolution of its wheels
+coulomb_n = 20
+
+[[load]]
+on = ["M104", "M109"]
+power_w = 40
+
+[[load]]
+on = ["M140", "M190"]
+power_w = 220
+
+[[load]]
+on = "M106"
+off = "M107"
+power_w = 5
+
+[limits]
+margin = 0.1                 # share of the peak power that is kept free
+"#);
     shop.put("p.toml", &ran.stdout);
     assert_eq!(shop.run(&["machine", "check", "p.toml"]).code, 0);
     shop.put(

@@ -20,7 +20,7 @@ fn after_a_macro_the_program_states_its_modes() {
     // The machine file's word stands: it moves nothing.
     let own = machine_with("klipper", "[language]\nignored_macros = [\"START_*\"]\n");
     assert_snapshot!(run(&own, "START_PRINT\nG1 X2 F60\n"), @"");
-    // A macro of this machine in the place of a command that the profile ignores.
+    // A macro of this machine in place of a command that the profile ignores.
     let own = machine_with(
         "klipper",
         "[language]\nunknown_macros = [\"BED_MESH_PROFILE\", \"M9833.2\", \"M620.11\"]\n",

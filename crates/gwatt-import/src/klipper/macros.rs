@@ -93,7 +93,7 @@ pub(super) fn named(items: &[Item<'_>], found: &mut Found) {
     }
     if !words.is_empty() {
         found.remarks.push(format!(
-            "Macros in the place of words ({}): these count as the firmware's own",
+            "Macros in place of words ({}): these count as the firmware's own",
             words.join(", ")
         ));
     }

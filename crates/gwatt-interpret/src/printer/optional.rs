@@ -89,8 +89,6 @@ impl Control<'_> {
                 .help("write G20 or G21 before M622, and none between it and M623");
             return;
         }
-        self.all_at_full_speed(run);
-        run.act(ActionKind::Other, 0.0);
         run.facts.turns_knob = true;
         if self.modal.feed != before.feed {
             self.modal.feed = None;
@@ -118,5 +116,7 @@ impl Control<'_> {
             state.tool = u32::MAX;
         }
         self.limits_at_least(&before.knobs);
+        self.all_at_full_speed(run);
+        run.act(ActionKind::Other, 0.0);
     }
 }

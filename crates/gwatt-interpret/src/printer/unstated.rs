@@ -39,16 +39,18 @@ impl Control<'_> {
     /// A macro of which only the machine knows what it does: it may move anywhere, heat, and
     /// leave another feed, other modes and the limits of the machine file.
     pub(super) fn unknown_macro(&mut self, run: &mut Run<'_, '_>, span: Span) {
-        self.may_heat(run, span);
-        self.unknown_moves(run, span);
-        self.modal.feed = None;
-        self.modal.motion = Motion::None;
-        self.printer.unstated = Unstated::of(true, true);
+        // Its own moves may run under the limits that it sets.
         run.facts.turns_knob = true;
         let factors = &mut self.printer;
         factors.feed_factor = factors.feed_factor.max(1.0);
         factors.flow = factors.flow.max(1.0);
         self.limits_at_least(&KnobState::new(self.machine));
+        self.may_heat(run, span);
+        self.unknown_moves(run, span);
+        self.modal.feed = None;
+        self.modal.motion = Motion::None;
+        self.printer.unstated = Unstated::of(true, true);
+        self.settle();
         let name = String::from_utf8_lossy(span.of(run.report.text)).into_owned();
         let message = format!(
             "what {name} sets only the machine knows: until the program sets them after it, limits \

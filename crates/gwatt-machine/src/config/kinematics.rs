@@ -32,7 +32,7 @@ pub(crate) fn take(
             letters[0], letters[1]
         );
         let help = Some("describe both of them".to_owned());
-        findings.error("kinematics", &given.span, message, help);
+        findings.error("machine-kinematics", &given.span, message, help);
         return kinematics;
     };
     let curve = |id: AxisId| force_curves.iter().find(|(axis, _)| *axis == id);
@@ -46,7 +46,12 @@ pub(crate) fn take(
         );
         let help = "give both the larger figure, and each the rotors of both motors: what the \
                     motors draw is then covered by what the axes draw at most";
-        findings.error("kinematics", &given.span, message, Some(help.to_owned()));
+        findings.error(
+            "machine-kinematics",
+            &given.span,
+            message,
+            Some(help.to_owned()),
+        );
     }
     let feeds_back = converters.iter().find(|converter| {
         converter.regen_power_w.is_some()
@@ -56,7 +61,7 @@ pub(crate) fn take(
         let message = "what motors feed back that move two axes together is not known: \
                        `regen_power_w` cannot be checked";
         let help = Some("leave `regen_power_w` out".to_owned());
-        findings.error("kinematics", &given.span, message, help);
+        findings.error("machine-kinematics", &given.span, message, help);
     }
     kinematics
 }

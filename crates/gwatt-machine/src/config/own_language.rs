@@ -79,7 +79,7 @@ pub(crate) fn take(
     // Macros, whatever their names: nobody says what they switch.
     printer.may_heat.extend(moves.iter().cloned());
     let macros = printer::commands(findings, own.unknown_macros.as_ref());
-    // This machine's macro stands in the place of the firmware's command of its name.
+    // This machine's macro stands in place of the firmware's command of its name.
     printer.ignored_macros.retain(|one| !macros.contains(one));
     printer.unknown_moves.retain(|one| !macros.contains(one));
     printer.ignored_macros.extend(ignored);
