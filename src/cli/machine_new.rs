@@ -20,7 +20,7 @@ An axis is its letter, a colon, and what is known of it, with commas between:
   jerk_mm_s3        jerk
 
 Speed, acceleration, table_kg and one drive are needed. Axes that turn (A, B, C) have rapid_deg_min,
-accel_deg_s2, table_kg_m2, workpiece_kg_m2, coulomb_nm and jerk_deg_s3, and no drive but motor and
+accel_deg_s2, table_kg_m2, workpiece_kg_m2, friction_nm and jerk_deg_s3, and no drive but motor and
 gear_ratio; a printer's extruder (E) has filament=33.7, the mm that a revolution of its wheels
 pushes. What else is left out is said once, with how it counts. On a terminal, without --axis, all
 is asked for.

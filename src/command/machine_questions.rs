@@ -472,7 +472,7 @@ mod tests {
         };
         let asked = ask(given, &mut script).unwrap();
         let a = "A:rapid_deg_min=7200,accel_deg_s2=1000,table_kg_m2=0.1,workpiece_kg_m2=0.2,\
-                 rotor_kg_m2=0.0002,gear_ratio=90,coulomb_nm=1,efficiency=0.8";
+                 rotor_kg_m2=0.0002,gear_ratio=90,friction_nm=1,efficiency=0.8";
         assert_eq!(asked.axes, [a], "{}", script.shown);
         assert_eq!(asked.spindle, None);
     }

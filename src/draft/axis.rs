@@ -263,7 +263,7 @@ impl DraftAxis {
     pub(super) fn lacks(&self, field: &str, kind: MachineKind) -> bool {
         match field {
             "rotor inertia" => self.drive != Drive::Direct && self.rotor_kg_m2().is_none(),
-            "friction" => ["guide_friction", "coulomb_n", "coulomb_nm"]
+            "friction" => ["guide_friction", "coulomb_n", "friction_nm"]
                 .iter()
                 .all(|name| self.get(name).is_none()),
             "counterweight" => {

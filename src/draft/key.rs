@@ -97,7 +97,7 @@ pub const KEYS: [Key; 17] = [
         &[Slide],
     ),
     key("coulomb_n", "friction in N", true, LENGTH),
-    key("coulomb_nm", "friction at the axis, in N m", true, &[Turn]),
+    key("friction_nm", "friction at the axis, in N m", true, &[Turn]),
     key(
         "counterweight_kg",
         "what balances its weight, in kg",

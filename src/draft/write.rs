@@ -121,7 +121,7 @@ fn axis_table(out: &mut String, axis: &DraftAxis, kind: MachineKind) {
         }
     };
     field("coulomb_n", axis.get("coulomb_n"), "");
-    field("coulomb_nm", axis.get("coulomb_nm"), "");
+    field("friction_nm", axis.get("friction_nm"), "");
     let moved = rounded(axis.moved_kg());
     if let Some(share) = axis.get("guide_friction") {
         let force = share * moved * GRAVITY_M_S2;

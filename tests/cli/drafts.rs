@@ -62,11 +62,12 @@ fn what_is_known_becomes_a_machine_file() {
     [limits]
     margin = 0.1                 # share of the peak power that is kept free
     "#);
-    insta::assert_snapshot!(ran.stderr, @r##"
+    insta::assert_snapshot!(ran.stderr, @r"
     gwatt: note: no controller given: programs are read as iso (`gwatt machine list` has all)
     gwatt: note: nothing given of what the supply takes back: what braking axes feed back is not checked
+    gwatt: note: no spindle given: its power does not count
     gwatt: note: no base load given: counted as 0 W
-    "##);
+    ");
     shop.put("mill.toml", &ran.stdout);
     let checked = shop.run(&["machine", "check", "mill.toml"]);
     assert_eq!((checked.code, checked.stderr.as_str()), (0, ""));
@@ -107,7 +108,7 @@ fn with_a_file_the_sum_is_shown() {
         ran.stdout
     );
     let note = "gwatt: note: no controller given: programs are read as iso (`gwatt machine list` has \
-                all)\n";
+                all)\ngwatt: note: no spindle given: its power does not count\n";
     assert_eq!(ran.stderr, note);
     let text = shop.get("mill.toml");
     assert!(
@@ -399,7 +400,7 @@ fn motors_are_listed_with_their_documents() {
 fn a_whole_mill_becomes_a_machine_file() {
     let shop = Shop::new();
     let a = "A:rapid_deg_min=7200,accel_deg_s2=1000,table_kg_m2=0.1,workpiece_kg_m2=0.2,\
-             rotor_kg_m2=0.0002,gear_ratio=90,coulomb_nm=1,efficiency=0.8";
+             rotor_kg_m2=0.0002,gear_ratio=90,friction_nm=1,efficiency=0.8";
     let spindle = "max_rpm=8000,inertia_kg_m2=0.02,accel_time_s=2.5,base_rpm=1500";
     let whole = [
         &MILL[..],
@@ -503,14 +504,14 @@ margin = 0.1                 # share of the peak power that is kept free
         assert_eq!(ran.code, 2);
         ran.stderr
     };
-    insta::assert_snapshot!(refused(&["--load", "M8"]), @"");
-    insta::assert_snapshot!(refused(&["--axis", "A:rapid_deg_min=1"]), @"");
-    insta::assert_snapshot!(refused(&["--axis", "Y:filament=3,rapid_mm_min=1"]), @"");
-    insta::assert_snapshot!(refused(&["--axis", "E:rapid_mm_min=1,accel_mm_s2=1,belt=20x2x6"]), @"");
-    insta::assert_snapshot!(refused(&["--spindle", "rpm=8000"]), @"");
-    insta::assert_snapshot!(refused(&["--spindle", "max_rpm=8000"]), @"");
-    insta::assert_snapshot!(refused(&["--spindle", "max_rpm=8000,max_rpm=1"]), @"");
-    insta::assert_snapshot!(refused(&["--spindle", "max_rpm=-1"]), @"");
+    insta::assert_snapshot!(refused(&["--load", "M8"]), @"gwatt: load `M8`: write it as M104=40 for a nozzle, M140=220 for a bed");
+    insta::assert_snapshot!(refused(&["--axis", "A:rapid_deg_min=1"]), @"gwatt: axis `A`: the letter of an axis of a printer is one of XYZUVWE");
+    insta::assert_snapshot!(refused(&["--axis", "Y:filament=3,rapid_mm_min=1"]), @"gwatt: axis `Y`: `filament` is no drive of this axis: leave it out");
+    insta::assert_snapshot!(refused(&["--axis", "E:rapid_mm_min=1,accel_mm_s2=1,belt=20x2x6"]), @"gwatt: axis `E`: `belt` is no drive of this axis: leave it out");
+    insta::assert_snapshot!(refused(&["--spindle", "rpm=8000"]), @"gwatt: spindle: `rpm` is not known; there are max_rpm, inertia_kg_m2, accel_time_s, base_rpm, friction_nm, peak_power_w, efficiency, base_load_w");
+    insta::assert_snapshot!(refused(&["--spindle", "max_rpm=8000"]), @"gwatt: spindle: it needs `inertia_kg_m2`");
+    insta::assert_snapshot!(refused(&["--spindle", "max_rpm=8000,max_rpm=1"]), @"gwatt: spindle: `max_rpm` is given twice: keep one of the two");
+    insta::assert_snapshot!(refused(&["--spindle", "max_rpm=-1"]), @"gwatt: spindle: `max_rpm=-1`: write max_rpm= and a number above 0");
     let mill = shop.run(&[&MILL[..], &["--load", "M8=750"]].concat());
-    insta::assert_snapshot!(mill.stderr, @"");
+    insta::assert_snapshot!(mill.stderr, @"gwatt: load `M8=750`: write it as M8/M9=750: the words that switch it on and off, and its power in W");
 }

@@ -120,7 +120,11 @@ fn reference_points_of_the_machine_file() {
         let points = "G28 = { X = -1, Y = -2, Z = -3 }\nG30 = { Z = -5 }";
         let shop = shop(controller, 600.0, &offsets(points));
         let text = written(&shop, program, "");
-        assert!(text.contains("X449 Y328 Z297 F"), "{controller}: {text}");
+        let there = ["X449", "Y328", "Z297"];
+        assert!(
+            there.iter().all(|place| text.contains(place)),
+            "{controller}: {text}"
+        );
         written(&shop, "G21 G90 G54\nG0 X100\nG30 Z50\nM2\n", "");
         let (code, _, errors) = shop.limit(&program.replace("G28", "G30"), "");
         assert_eq!(code, 1, "{controller}");

@@ -61,16 +61,36 @@ fn axes_that_share_motors_have_to_be_alike() {
     let core = |kinematics: &str| core(&format!("kinematics = \"{kinematics}\"\n"));
     assert_snapshot!(findings(&core("corexy")), @"");
     assert_snapshot!(findings(&core("cartesian")), @"");
-    assert_snapshot!(findings(&core("corexz")), @"");
-    assert_snapshot!(findings(&core("delta")), @"");
+    assert_snapshot!(findings(&core("corexz")), @r#"
+    line 4, error machine-kinematics: the axes X and Z share their motors / describe both of them
+      | kinematics = "corexz"
+      |              ^^^^^^^^
+    "#);
+    assert_snapshot!(findings(&core("delta")), @r#"
+    line 4, error machine-value: `kinematics` must be "cartesian", "corexy" or "corexz", not "delta"
+      | kinematics = "delta"
+      |              ^^^^^^^
+    "#);
     let heavier = core("corexy").replacen("mass_kg = 0.5", "mass_kg = 0.6", 1);
-    assert_snapshot!(findings(&heavier), @"");
+    assert_snapshot!(findings(&heavier), @r#"
+    line 4, error machine-kinematics: X and Y share their motors, but their mass differs / give both the larger figure, and each the rotors of both motors: what the motors draw is then covered by what the axes draw at most
+      | kinematics = "corexy"
+      |              ^^^^^^^^
+    "#);
     let curve = "torque_curve = [{ rpm = 0, torque_nm = 1 }, { rpm = 3000, torque_nm = 1 }]\nlead_mm = 40\n";
     let stronger = core("corexy").replacen("[axes.Y]\n", &format!("[axes.Y]\n{curve}"), 1);
-    assert_snapshot!(findings(&stronger), @"");
+    assert_snapshot!(findings(&stronger), @r#"
+    line 4, error machine-kinematics: X and Y share their motors, but their torque or force curve differs / give both the larger figure, and each the rotors of both motors: what the motors draw is then covered by what the axes draw at most
+      | kinematics = "corexy"
+      |              ^^^^^^^^
+    "#);
     let feeding = core("corexy").replace(
         "peak_power_w = 1000",
         "peak_power_w = 1000\nregen_power_w = 100",
     );
-    assert_snapshot!(findings(&feeding), @"");
+    assert_snapshot!(findings(&feeding), @r#"
+    line 4, error machine-kinematics: what motors feed back that move two axes together is not known: `regen_power_w` cannot be checked / leave `regen_power_w` out
+      | kinematics = "corexy"
+      |              ^^^^^^^^
+    "#);
 }
