@@ -203,3 +203,27 @@ fn slower_runs_keep_their_feed() {
         assert_eq!(text.matches(&shown).count(), runs, "{feed}: {text}");
     }
 }
+
+/// A subprogram whose blocks count on the F of each call: they get the lowest of all calls, where
+/// one of them has to be lowered in one call, and the blocks after the calls have their own.
+#[test]
+fn blocks_of_a_subprogram_get_the_lowest_feed() {
+    let sub = "O2000\nG1 X500. Y500.\nX0. Y0.\nM99\n";
+    let main = "O1000\nG90 G61\nG0 X0. Y0.\nG1 F8000.\nM98 P2000\nG1 X-10. F1000.\n\
+                F20000.\nM98 P2000\nG1 X-20. F1000.\nM30\n";
+    let text = limited("fanuc", 600.0, &format!("{main}{sub}"));
+    assert_eq!(
+        text,
+        format!("{main}O2000\nG1 X500. Y500. F8000.\nX0. Y0. F8000.\nM99\n")
+    );
+    // What fits in all of them stays.
+    let whole = format!("{main}{sub}").replace("F20000", "F9000");
+    assert_eq!(limited("fanuc", 900.0, &whole), whole);
+    // A block after the calls counts on the F too, and gets its own.
+    let next = main.replace("G1 X-20. F1000.", "G1 X-20.");
+    let text = limited("fanuc", 600.0, &format!("{next}{sub}"));
+    assert!(text.contains("G1 X-20. F20000.\nM30\n"), "{text}");
+    // A rapid next to them has no F of its own.
+    let rapid = sub.replace("X0. Y0.", "G0 X0. Y0.\nG1 X1.");
+    limited("fanuc", 900.0, &format!("{main}{rapid}"));
+}

@@ -160,20 +160,20 @@ impl Interpreter<'_> {
             },
         };
         let control = &mut self.control;
-        control.cut(
-            &Cut {
-                to: cycle.start,
-                kind: CutKind::Rapid,
-            },
-            &mut run,
-        );
+        // Those of the contour's last block have had their turn.
+        run.words.groups = 0;
+        let approach = Cut {
+            to: cycle.start,
+            kind: CutKind::Rapid,
+        };
+        control.compensated_cut(&approach, errors, &mut run);
         match super::passes::cuts(&cycle.cycle, reader.pieces, cycle.start) {
             Ok(cuts) => {
                 for cut in cuts {
                     if run.report.diagnostics.errors != errors {
                         return;
                     }
-                    control.cut(&cut, &mut run);
+                    control.compensated_cut(&cut, errors, &mut run);
                 }
             }
             Err(found) => {
@@ -185,6 +185,15 @@ impl Interpreter<'_> {
 }
 
 impl Control<'_> {
+    /// One move of a cycle, as compensation makes it run (G70).
+    fn compensated_cut(&mut self, cut: &Cut, errors: u64, run: &mut Run<'_, '_>) {
+        let before = run.steps.len();
+        self.cut(cut, run);
+        if self.compensation.is_some() {
+            self.compensate(run, before, errors);
+        }
+    }
+
     /// One move of a cycle.
     fn cut(&mut self, cut: &Cut, run: &mut Run<'_, '_>) {
         let unit = self.modal.mm_per_unit;
