@@ -49,7 +49,11 @@ impl<'t> Cursor<'t> {
                 b';' => return None,
                 b'(' if self.lexis != Lexis::Sinumerik => {
                     let rest = self.text.get(self.at..)?;
-                    self.at += memchr::memchr(b')', rest).map_or(rest.len(), |end| end + 1);
+                    self.at += match memchr::memchr(b')', rest) {
+                        Some(end) => end + 1,
+                        None if self.lexis == Lexis::Blanks => return None,
+                        None => rest.len(),
+                    };
                 }
                 byte => return Some(byte.to_ascii_uppercase()),
             }
