@@ -205,7 +205,7 @@ fn comments_make_findings_known() {
     0 known, 1 new
       grown: peak-power in line 2, 7510.8 W of 3600.0 W: G0 X200 Y200 Z200 (gwatt: known peak-power 7510 W of 3600 W), its comment has peak-power 7510.0 W of 3600.0 W
     ");
-    insta::assert_snapshot!(said("(gwatt: known peak-power 9000 W of 4000 W)"), @"");
+    insta::assert_snapshot!(said("(gwatt: known peak-power 7511 W of 4000 W)"), @"");
     insta::assert_snapshot!(said("(gwatt: known regen-power 9000 W of 3600 W)"), @"");
     insta::assert_snapshot!(said("(gwatt: known)"), @"");
     let refused = with(known, &["--known-comments", "--write-baseline", "b.json"]);

@@ -423,7 +423,7 @@ fn a_whole_mill_becomes_a_machine_file() {
     insta::assert_snapshot!(parts, @"");
     assert!(
         ran.stdout
-            .contains("A: 1.92 kg m2 = 0.3 moved inertia + 1.62 rotor"),
+            .contains("A: 1.92 kg m2 = 0.3 table + 1.62 rotor"),
         "{}",
         ran.stdout
     );

@@ -136,7 +136,7 @@ fn reference_points_of_the_machine_file() {
     let refused = |controller: &str, point: &str| {
         let shop = shop(controller, 600.0, &offsets(point));
         shop.put("a.nc", program);
-        let (code, _, errors) = shop.run("check a.nc -m mill.toml");
+        let (code, _, errors) = shop.run("check a.nc");
         assert_eq!(code, 2);
         errors
     };

@@ -129,7 +129,7 @@ fn each_control_waits_in_its_own_words() {
 /// Where lower speeds cost less, they are taken.
 #[test]
 fn lower_speeds_that_cost_less_are_taken() {
-    let shop = shop("iso", 102.0);
+    let shop = shop("iso", 90.0);
     let lowered = shop.limit(PROGRAM, "--allow feed");
     let both = shop.limit(PROGRAM, "--allow feed,pause --json r.json");
     assert_eq!((lowered.0, both.0), (0, 0), "{}", both.2);

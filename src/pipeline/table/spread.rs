@@ -85,12 +85,10 @@ impl Table {
         while let Some(line) = open.pop() {
             let users: Vec<_> = self.left_feeds.users(line).collect();
             for (user, restored) in users {
-                let lowers = self.lines.get(&user).is_some_and(|entered| entered.lowers)
-                    && !self.left_feeds.can_have_its_feed(user);
-                if lowers {
-                    open.extend(self.lower(user, restored));
-                } else {
+                if self.left_feeds.can_have_its_feed(user) {
                     self.restore(user, restored);
+                } else {
+                    open.extend(self.lower(user, restored));
                 }
             }
         }
