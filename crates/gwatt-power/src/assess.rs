@@ -65,9 +65,10 @@ impl<'m> Assessor<'m> {
     pub fn new(machine: &'m Machine, requested: Option<Certificate>, want: Want) -> Self {
         let [largest, nominal] = Overrides::of(machine);
         let model = PowerModel::new(machine);
-        let requested = match machine.kinematics.shares_motors() {
-            true => Some(Certificate::Robust),
-            false => requested,
+        let requested = if machine.kinematics.shares_motors() {
+            Some(Certificate::Robust)
+        } else {
+            requested
         };
         let rules = machine.controller.planner.look_ahead;
         let rules = rules.filter(|_| requested != Some(Certificate::Robust));

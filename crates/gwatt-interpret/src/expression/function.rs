@@ -75,7 +75,8 @@ impl Function {
             Self::Asin => libm::asin(x).to_degrees(),
             Self::Atan => libm::atan(x).to_degrees(),
             Self::Bound => z.clamp(x.min(y), x.max(y)),
-            Self::Ceil => x.ceil(),
+            Self::Outward if x < 0.0 => x.floor(),
+            Self::Ceil | Self::Outward => x.ceil(),
             Self::Cos => libm::cos(x.to_radians()),
             Self::Cot => 1.0 / libm::tan(x.to_radians()),
             Self::Exists => return Err("a function of another form"),
@@ -92,8 +93,6 @@ impl Function {
             Self::Min => x.min(y),
             Self::Modulo if y == 0.0 => return Err("a division by zero"),
             Self::Modulo => libm::fmod(x, y),
-            Self::Outward if x < 0.0 => x.floor(),
-            Self::Outward => x.ceil(),
             Self::Power => power(x, y)?,
             Self::PowerOfTen => libm::pow(10.0, x),
             Self::RoundInteger if x.abs() >= ROUND_MAX => {

@@ -181,13 +181,11 @@ impl<'t> Text<'t> {
             let begins = self.byte(digits).is_some_and(|byte| byte.is_ascii_digit());
             let number = self.read(digits, end).filter(|_| begins);
             if let Some(number) = number {
-                return match super::super::g_codes::code_number(number) {
-                    Some(number) => (Head::Code(letter, number, span), end),
-                    None => {
-                        let name = self.line.get(start..end).unwrap_or_default();
-                        (Head::Odd(name, span), end)
-                    }
-                };
+                let name = self.line.get(start..end).unwrap_or_default();
+                let odd = Head::Odd(name, span);
+                let code = super::super::g_codes::code_number(number);
+                let head = code.map_or(odd, |number| Head::Code(letter, number, span));
+                return (head, end);
             }
         }
         let mut end = start;

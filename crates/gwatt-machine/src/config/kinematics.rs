@@ -66,9 +66,12 @@ pub(crate) fn take(
     kinematics
 }
 
+/// A figure of an axis, with its name.
+type Named = (&'static str, fn(&Axis) -> f64);
+
 /// What differs between two axes that share their motors.
 fn differs(first: &Axis, second: &Axis) -> Option<&'static str> {
-    let figures: [(&'static str, fn(&Axis) -> f64); 13] = [
+    let figures: [Named; 13] = [
         ("rapid speed", |axis| axis.rapid_mm_s),
         ("acceleration", |axis| axis.accel_mm_s2),
         ("jerk", |axis| axis.jerk_mm_s3),

@@ -67,8 +67,26 @@ impl OffsetsTable {
     }
 }
 
+/// Machine coordinates of each system's zero; where G28 and G30 lead, by axis.
+type Places = ([Option<AxisValues>; 9], [[Option<f64>; AXES]; 2]);
+
+/// What the table gives, if there is one.
+pub(crate) fn all(
+    findings: &mut Findings<'_>,
+    table: Option<&OffsetsTable>,
+    axes: AxisSet,
+    controller: &Controller,
+) -> Places {
+    table.map_or(([None; 9], [[None; AXES]; 2]), |table| {
+        (
+            offsets(findings, table, axes),
+            points(findings, table, axes, controller),
+        )
+    })
+}
+
 /// Work offsets by the number of the system.
-pub(crate) fn offsets(
+fn offsets(
     findings: &mut Findings<'_>,
     table: &OffsetsTable,
     axes: AxisSet,
@@ -87,7 +105,7 @@ pub(crate) fn offsets(
 }
 
 /// Where G28 and G30 lead, by axis, on controls that keep these points among their parameters.
-pub(crate) fn points(
+fn points(
     findings: &mut Findings<'_>,
     table: &OffsetsTable,
     axes: AxisSet,
