@@ -45,7 +45,7 @@ impl Operator {
     /// The result, or what is wrong.
     pub(super) fn apply(self, a: f64, b: f64, rules: &Rules) -> Result<f64, &'static str> {
         let holds = rules.holds;
-        let bits = |join: fn(i64, i64) -> i64| {
+        let bits = |join: fn(i64, i64) -> i64| -> Result<f64, &'static str> {
             let (a, b) = ((rules.bits)(a)?, (rules.bits)(b)?);
             Ok(join(a, b) as f64)
         };
