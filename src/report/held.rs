@@ -53,7 +53,7 @@ impl Held {
     /// Holds the findings of `program` against those of `baseline`.
     #[must_use]
     pub fn new(baseline: &Baseline, program: &str, summary: &Summary) -> Self {
-        Self::default().against(baseline, program, summary, Known::of(summary))
+        Self::default().against(baseline, program, summary, &Known::of(summary))
     }
 
     /// The same, where comments that name findings of their own lines count too. What such a
@@ -98,7 +98,7 @@ impl Held {
         }
         let over_time = Known::of(summary).into_iter().skip(summary.unfit.len());
         others.extend(over_time);
-        held.against(baseline, program, summary, others)
+        held.against(baseline, program, summary, &others)
     }
 
     /// Holds these findings against those of `baseline`.
@@ -107,7 +107,7 @@ impl Held {
         baseline: &Baseline,
         program: &str,
         summary: &Summary,
-        now: Vec<Known>,
+        now: &[Known],
     ) -> Self {
         let held = &mut self;
         let mut then: BTreeMap<_, Vec<&Known>> = BTreeMap::new();
@@ -115,7 +115,7 @@ impl Held {
             then.entry(known.key()).or_default().push(known);
         }
         let mut groups: BTreeMap<_, Vec<&Known>> = BTreeMap::new();
-        for found in &now {
+        for found in now {
             groups.entry(found.key()).or_default().push(found);
         }
         for (key, found) in groups {

@@ -57,14 +57,7 @@ pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
     }
     let all = || panels.iter().flat_map(|panel| &panel.1);
     let limits = limits_w(page);
-    let lines = limits.iter().copied().filter(|it| it.is_finite());
-    let powers = all()
-        .flat_map(|it| [it[2], -it[3]])
-        .filter(|it| it.is_finite());
-    let powers = powers.chain(lines).chain([0.0, 1.0]);
-    let (least_w, most_w) = powers.fold((0.0, 0.0), |(least, most): (f64, f64), it| {
-        (least.min(it), most.max(it))
-    });
+    let (least_w, most_w) = extent(all().copied(), &limits);
     let room = 0.06 * (most_w - least_w);
     let height = TOP + (PANEL + GAP) * panels.len() as f64;
     writeln!(
@@ -111,6 +104,16 @@ pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
         out.write_all(text.as_bytes())?;
     }
     writeln!(out, "</svg>")
+}
+
+/// From the least to the largest power of these peaks and lines, and no less than a watt.
+fn extent(peaks: impl Iterator<Item = [f64; 4]>, limits_w: &[f64]) -> (f64, f64) {
+    let powers = peaks.flat_map(|it| [it[2], -it[3]]);
+    let powers = powers.chain(limits_w.iter().copied()).chain([0.0, 1.0]);
+    let powers = powers.filter(|it| it.is_finite());
+    powers.fold((0.0, 0.0), |(least, most): (f64, f64), it| {
+        (least.min(it), most.max(it))
+    })
 }
 
 /// The limits of all converters, W: drawn up, fed back down.
