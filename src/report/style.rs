@@ -127,14 +127,11 @@ mod tests {
         };
         let name = "parts/2026/housing/op10-roughing.nc";
         assert_eq!(narrow.cut_name(name, 35), name);
-        assert_eq!(
-            narrow.cut_name(name, 20),
-            "parts/…-roughing.nc".replace("…-", "…0-")
-        );
+        assert_eq!(narrow.cut_name(name, 20), "parts/…0-roughing.nc");
         assert_eq!(Style::PLAIN.cut_name(name, 20), name);
         assert_eq!(
             narrow.cut_name("部品/加工プログラム.nc", 14),
-            "部品…ラム.nc"
+            "部品…グラム.nc"
         );
     }
 }
