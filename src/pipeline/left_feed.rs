@@ -126,6 +126,11 @@ impl LeftFeeds {
         self.users.get(&line).is_some_and(User::can_have_its_feed)
     }
 
+    /// The block of a line that counts on an F, as one of its runs had it.
+    pub(super) fn block_of(&self, line: LineKey) -> Option<Decision> {
+        Some((*self.users.get(&line)?.restored).clone())
+    }
+
     /// The lines that count on the F that a line leaves, each with its F.
     pub(super) fn users(&self, line: LineKey) -> impl Iterator<Item = (LineKey, Decision)> {
         let users = self.lines.get(&line).into_iter();

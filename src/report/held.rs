@@ -68,10 +68,12 @@ impl Held {
                 Comment::Known(rule, value, limit) => found.as_commented(rule, value, limit),
                 Comment::Unclear => {
                     let text = format!(
-                        "the comment of line {} is not understood: write (gwatt: known {} {})",
+                        "the comment of line {} is not understood: write (gwatt: known {} {:.0} W of \
+                         {:.0} W)",
                         found.line,
                         found.rule,
-                        figure(&found)
+                        found.value.unwrap_or_default().ceil(),
+                        found.limit.floor()
                     );
                     held.unclear.push(text);
                     others.push(found);

@@ -205,9 +205,18 @@ fn comments_make_findings_known() {
     0 known, 1 new
       grown: peak-power in line 2, 7510.8 W of 3600.0 W: G0 X200 Y200 Z200 (gwatt: known peak-power 7510 W of 3600 W), its comment has peak-power 7510.0 W of 3600.0 W
     ");
-    insta::assert_snapshot!(said("(gwatt: known peak-power 7511 W of 4000 W)"), @"");
-    insta::assert_snapshot!(said("(gwatt: known regen-power 9000 W of 3600 W)"), @"");
-    insta::assert_snapshot!(said("(gwatt: known)"), @"");
+    insta::assert_snapshot!(said("(gwatt: known peak-power 7511 W of 4000 W)"), @r"
+    0 known, 1 new
+      grown: peak-power in line 2, 7510.8 W of 3600.0 W: G0 X200 Y200 Z200 (gwatt: known peak-power 7511 W of 4000 W), its comment has peak-power 7511.0 W of 4000.0 W
+    ");
+    insta::assert_snapshot!(said("(gwatt: known regen-power 9000 W of 3600 W)"), @r"
+    0 known, 1 new
+      grown: peak-power in line 2, 7510.8 W of 3600.0 W: G0 X200 Y200 Z200 (gwatt: known regen-power 9000 W of 3600 W), its comment has regen-power 9000.0 W of 3600.0 W
+    ");
+    insta::assert_snapshot!(said("(gwatt: known)"), @r"
+    0 known, 1 new
+      the comment of line 2 is not understood: write (gwatt: known peak-power 7511 W of 3600 W)
+    ");
     let refused = with(known, &["--known-comments", "--write-baseline", "b.json"]);
     assert_eq!(refused.code, 2);
 }

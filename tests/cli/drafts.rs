@@ -420,7 +420,30 @@ fn a_whole_mill_becomes_a_machine_file() {
     let ran = shop.run(&whole.concat());
     assert_eq!(ran.code, 0, "{}", ran.stderr);
     let (_, parts) = ran.stdout.split_once("[axes.A]").unwrap();
-    insta::assert_snapshot!(parts, @"");
+    insta::assert_snapshot!(parts, @r#"
+    kind = "rotary"
+    rapid_deg_min = 7200
+    accel_deg_s2 = 1000
+    moved_inertia_kg_m2 = 0.3    # table 0.1 + workpiece 0.2
+    rotor_kg_m2 = 0.0002
+    gear_ratio = 90
+    friction_nm = 1
+    efficiency = 0.8
+
+    [spindle]
+    max_rpm = 8000
+    inertia_kg_m2 = 0.02
+    accel_time_s = 2.5
+    base_rpm = 1500
+
+    [[load]]
+    on = "M8"
+    off = "M9"
+    power_w = 750
+
+    [limits]
+    margin = 0.1                 # share of the peak power that is kept free
+    "#);
     assert!(
         ran.stdout
             .contains("A: 1.92 kg m2 = 0.3 table + 1.62 rotor"),

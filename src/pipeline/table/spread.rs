@@ -88,7 +88,7 @@ impl Table {
                 if self.left_feeds.can_have_its_feed(user) {
                     self.restore(user, restored);
                 } else {
-                    open.extend(self.lower(user, restored));
+                    open.extend(self.lower(user));
                 }
             }
         }
@@ -110,10 +110,11 @@ impl Table {
 
     /// The lowest F of all its runs for a line; gives it where those that count on it are
     /// still to be looked at.
-    fn lower(&mut self, line: LineKey, restored: super::Decision) -> Option<LineKey> {
+    fn lower(&mut self, line: LineKey) -> Option<LineKey> {
+        let block = self.left_feeds.block_of(line)?;
         let entered = self.lines.get_mut(&line)?;
         let lowest = entered.lowest_feed?;
-        let decision = entered.decision.get_or_insert_with(|| Box::new(restored));
+        let decision = entered.decision.get_or_insert_with(|| Box::new(block));
         decision.around = FeedAround::Stated;
         if decision.change.feed.is_some() {
             return None;
