@@ -29,6 +29,7 @@ MILLS = {"fanuc", "haas", "mitsubishi", "mazak", "syntec", "iso"}
 # Those whose reference points are kept in the control, from places that offsets make known.
 KEPT = {"grbl", "linuxcnc"}
 OFFSETS = "".join(f"G5{n} = {{ X = -{100 * n}, Y = -250, Z = -400 }}\n" for n in range(4, 10))
+POINTS = "".join(f"{word} = {{ X = 0, Y = 0, Z = 0 }}\n" for word in ("G28", "G30"))
 LATHE_OFFSETS = "".join(f"G5{n} = {{ X = -150, Z = {-100 * n} }}\n" for n in range(4, 10))
 TOOLS = "".join(f"T{n} P{n} Z{50 + n}\n" for n in range(1, 1000))
 # Rapid in mm/min or deg/min, acceleration in mm/s² or deg/s², mass or inertia, friction.
@@ -59,6 +60,8 @@ def machine(profile, peak_w):
         text += "escape_mm = 1\ngroove_return_mm = 1\n"
     if profile in MILLS | KEPT:
         text += "[offsets]\n" + OFFSETS
+    if profile in KEPT:
+        text += POINTS
     if profile in LATHES:
         text += "[offsets]\n" + LATHE_OFFSETS
     for name, (rapid, accel, mass, friction) in axes.items():

@@ -56,6 +56,29 @@ fn finishing_runs_beside_the_contour() {
 ");
 }
 
+/// Under compensation the pass is shifted as any path: by a radius of 0.5 mm, and by the
+/// tool's orientation by that in X and Z. The corner is met at Z-4 - 0.5 + 0.7071 - 0.5. How
+/// `LinuxCNC` goes to the contour is not followed.
+#[test]
+fn finishing_under_compensation() {
+    let found = moves("G0 X20 Z10\nG42.1 D1 L2\nG70 Q1 X9 Z2\nG40\nG0 X30 Z10");
+    let feeds: Vec<&str> = found.lines().filter(|line| line.contains("feed")).collect();
+    assert_eq!(
+        feeds,
+        ["9 feed Z-4.2929 F100", "9 feed X7.8536 Z-7.1464 F100"],
+        "{found}"
+    );
+    let shop = crate::shop::Shop::mill("linuxcnc", "peak_power_w = 9000", "", "");
+    let program = format!("{CONTOUR}G0 X20 Z10\nG42.1 D1 L2\nG70 Q1 X9 Z2\nG40\nG0 X30 Z10\nM2\n");
+    shop.put("a.ngc", &program);
+    let (code, _, errors) = shop.run("check a.ngc");
+    assert_eq!(code, 0, "{errors}");
+    assert!(
+        errors.contains("the rapids of G70 count at full speed"),
+        "{errors}"
+    );
+}
+
 /// "It is an error if": what the manual lists, and what is not followed.
 #[test]
 fn what_cannot_be_is_refused() {
@@ -68,7 +91,7 @@ fn what_cannot_be_is_refused() {
         "G70 Q1 X9 Z2 P0",
         "G1 G71 Q1 X9 Z2",
         "G93 G71 Q1 X9 Z2 F1",
-        "G41.1 D1\nG70 Q1 X9 Z2",
+        "G41.1 D1\nG71 Q1 X9 Z2",
         "G71 Q-1 X9 Z2",
         "o2 sub\nG0 X5 Z0\nG81 Z-2 R1\no2 endsub\nG71 Q2 X9 Z2",
         "o2 sub\nG0 X5 Z0\nG1 Z-4 A1 C1\no2 endsub\nG71 Q2 X9 Z2",

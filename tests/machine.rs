@@ -4,6 +4,7 @@ mod builtin;
 mod conversion;
 mod default_machine;
 mod errors;
+mod kinematics;
 mod levels;
 mod load;
 mod own_rules;

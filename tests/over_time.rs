@@ -166,6 +166,25 @@ fn what_cannot_be_lowered_is_refused_with_the_reason() {
     assert!(reported.contains(" W of 90"), "{reported}");
 }
 
+/// Far above what it bears continuously the converter may give peaks that do not last: the
+/// speeds come down to a small share of them.
+#[test]
+fn continuous_power_far_below_the_peaks() {
+    let mut shares = Vec::new();
+    for peak_w in [20_000.0, 1_000.0] {
+        let shop = mill(
+            "iso",
+            "",
+            &format!("peak_power_w = {peak_w}\ncontinuous_power_w = 115"),
+        );
+        shop.put("a.ngc", THERE_AND_BACK);
+        let (code, _, reported) = shop.run("limit a.ngc -o b.ngc");
+        assert_eq!(code, 0, "{reported}");
+        shares.push(shop.get("b.ngc"));
+    }
+    assert!(shares.iter().all(|text| text.contains("G1 ")), "{shares:?}");
+}
+
 #[test]
 fn a_capacitor_carries_peaks_only_where_it_may() {
     // 237.5 W beyond 300 W at the end of 90.5 ms: 10.7 J. From 600 to 580 V

@@ -5,6 +5,7 @@ mod heaters;
 mod limits;
 mod lines;
 mod macros;
+mod unknown;
 
 use std::fmt::Write as _;
 use std::io::Cursor;

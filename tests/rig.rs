@@ -5,8 +5,8 @@ mod any;
 
 use gwatt::interpret::{Arc, FeedMode, Move, MoveKind};
 use gwatt::machine::{
-    AXES, ArcRule, Axis, AxisKind, AxisSet, Controller, Converter, Family, Language, Limits,
-    Machine, Path, PathMode, Planner, RapidKnob, RapidPath, Ratings, Responses,
+    AXES, ArcRule, Axis, AxisKind, AxisSet, Controller, Converter, Family, Kinematics, Language,
+    Limits, Machine, Path, PathMode, Planner, RapidKnob, RapidPath, Ratings, Responses,
 };
 use gwatt::plan::{Phase, Plan, Trajectory};
 
@@ -50,6 +50,8 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
     Machine {
         name: "rig".into(),
         controller: controller(),
+        kinematics: Kinematics::Cartesian,
+        points: [[None; AXES]; 2],
         axes: slots,
         axis_set,
         converters: vec![Converter {

@@ -40,6 +40,14 @@ pub struct CheckArgs {
     /// ones, and those that have grown, do
     #[arg(long, value_name = "FILE", help_heading = "Known findings")]
     pub baseline: Option<PathBuf>,
+    /// Findings are known too whose own line has a comment such as (gwatt: known peak-power
+    /// 6000 W of 3600 W), until they grow
+    #[arg(
+        long,
+        conflicts_with = "write_baseline",
+        help_heading = "Known findings"
+    )]
+    pub known_comments: bool,
     /// Write what does not fit here, as a baseline for later runs, and exit with 0
     #[arg(
         long,

@@ -19,8 +19,14 @@ An axis is its letter, a colon, and what is known of it, with commas between:
   counterweight_kg  balances Z and moves with it     efficiency    mechanical by electrical power
   jerk_mm_s3        jerk
 
-Speed, acceleration, table_kg and one drive are needed. What else is left out is said once, with
-how it counts. On a terminal, without --axis, all is asked for.
+Speed, acceleration, table_kg and one drive are needed. Axes that turn (A, B, C) have rapid_deg_min,
+accel_deg_s2, table_kg_m2, workpiece_kg_m2, friction_nm and jerk_deg_s3, and no drive but motor and
+gear_ratio; a printer's extruder (E) has filament=33.7, the mm that a revolution of its wheels
+pushes. What else is left out is said once, with how it counts. On a terminal, without --axis, all
+is asked for.
+
+A spindle has max_rpm, inertia_kg_m2 (rotor, chuck and tool) and accel_time_s, and if known base_rpm
+(up to which its torque is constant), friction_nm, peak_power_w, efficiency and base_load_w.
 
 Examples:
   gwatt machine new -o mine.toml
@@ -29,7 +35,8 @@ Examples:
   gwatt machine new --kind router --supply 400 -o router.toml \\
     --axis X:rapid_mm_min=12000,accel_mm_s2=1500,table_kg=20,screw=16x900x10,rotor_kg_m2=0.00003 \\
     --axis Y:rapid_mm_min=12000,accel_mm_s2=1500,table_kg=35,screw=16x900x10,rotor_kg_m2=0.00003 \\
-    --axis Z:rapid_mm_min=4000,accel_mm_s2=800,table_kg=6,screw=16x250x5,rotor_kg_m2=0.00002";
+    --axis Z:rapid_mm_min=4000,accel_mm_s2=800,table_kg=6,screw=16x250x5,rotor_kg_m2=0.00002 \\
+    --spindle max_rpm=24000,inertia_kg_m2=0.0004,accel_time_s=2 --load M8/M9=60";
 
 /// Arguments of `machine new`.
 #[derive(Debug, Clone, Args)]
@@ -59,6 +66,13 @@ pub struct NewArgs {
     /// An axis; may be given several times
     #[arg(long = "axis", value_name = "AXIS")]
     pub axes: Vec<String>,
+    /// The spindle
+    #[arg(long, value_name = "SPINDLE")]
+    pub spindle: Option<String>,
+    /// What words of a program switch on and off, with its power in W: M8/M9=750, on printers
+    /// M104=40 for the nozzle, M140=220 for the bed; may be given several times
+    #[arg(long = "load", value_name = "ON/OFF=W")]
+    pub loads: Vec<String>,
     /// Where the machine file goes [default: standard output]
     #[arg(short, long, value_name = "TOML")]
     pub output: Option<PathBuf>,

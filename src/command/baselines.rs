@@ -24,6 +24,8 @@ pub struct Baselines {
     known: Option<(PathBuf, Baseline)>,
     /// What is to be written, and where.
     written: Option<(PathBuf, Spool, Baseline)>,
+    /// Comments count too.
+    comments: bool,
     /// Programs so far.
     checked: Vec<String>,
     /// Moves over the limit that no baseline can list.
@@ -54,6 +56,7 @@ impl Baselines {
         Ok(Self {
             known: args.baseline.as_ref().map(read).transpose()?,
             written: args.write_baseline.as_ref().map(write).transpose()?,
+            comments: args.known_comments,
             ..Self::default()
         })
     }
@@ -63,12 +66,17 @@ impl Baselines {
         if let Ok(summary) = &checked.outcome {
             let nothing = Baseline::default();
             let known = self.known.as_ref().map(|(_, known)| known);
-            let held = Held::new(known.unwrap_or(&nothing), &checked.program, summary);
+            let compare = if self.comments {
+                Held::with_comments
+            } else {
+                Held::new
+            };
+            let held = compare(known.unwrap_or(&nothing), &checked.program, summary);
             self.not_listed += held.not_listed();
             if let Some((_, _, written)) = &mut self.written {
                 written.add(&checked.program, summary);
             }
-            checked.held = known.map(|_| held);
+            checked.held = (known.is_some() || self.comments).then_some(held);
         }
         self.checked.push(checked.program.clone());
     }

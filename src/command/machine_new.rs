@@ -3,7 +3,7 @@
 use std::io::{self, IsTerminal, Write};
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use gwatt::draft::{Draft, DraftAxis, MachineKind};
+use gwatt::draft::{Draft, DraftAxis, DraftLoad, DraftSpindle, MachineKind};
 use gwatt::machine::{Machine, builtin};
 use gwatt::report::{axis_table, mass_table};
 
@@ -67,6 +67,16 @@ fn draft(args: &NewArgs) -> Result<Draft> {
         feeds_back_w: args.feeds_back,
         base_load_w: args.base_load,
         axes: axes.collect::<Result<_, _>>()?,
+        spindle: args
+            .spindle
+            .as_deref()
+            .map(DraftSpindle::parse)
+            .transpose()?,
+        loads: args
+            .loads
+            .iter()
+            .map(|text| DraftLoad::parse(text, kind))
+            .collect::<Result<_, _>>()?,
     };
     draft.check()?;
     ensure!(!draft.name.trim().is_empty(), "the machine's name is empty");

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use super::key::{KEYS, Key};
+use super::key::{Form, KEYS, Key};
 use super::{DraftError, MachineKind};
 use crate::machine::{Motor, MotorSeries, motor};
 
@@ -18,6 +18,10 @@ pub enum Drive {
     Belt([f64; 3]),
     /// A linear motor.
     Direct,
+    /// The motor turns the axis, by a gear or without.
+    Turning,
+    /// Wheels push filament: this far a revolution, mm.
+    Filament(f64),
 }
 
 /// An axis.
@@ -25,6 +29,8 @@ pub enum Drive {
 pub struct DraftAxis {
     /// Its letter.
     pub letter: char,
+    /// How it moves.
+    pub form: Form,
     /// What drives it.
     pub drive: Drive,
     /// Its motor, and the document that this comes from.
@@ -33,9 +39,6 @@ pub struct DraftAxis {
     pub(super) torque_limits: bool,
     figures: BTreeMap<&'static str, f64>,
 }
-
-/// Letters of axes that slide.
-const LETTERS: &str = "XYZUVW";
 
 impl DraftAxis {
     /// Reads an axis: its letter, a colon, and `key=value` with commas between.
@@ -50,16 +53,26 @@ impl DraftAxis {
         };
         let mut letters = name.trim().chars();
         let letter = match (letters.next(), letters.next()) {
-            (Some(letter), None) if LETTERS.contains(letter) => letter,
-            _ => {
-                return Err(fault(format!(
-                    "its letter is one of {LETTERS}; machine files describe axes that turn, and \
-                     extruders, by hand (docs/machine-file.md)"
-                )));
-            }
+            (Some(letter), None) => Some(letter),
+            _ => None,
         };
+        let known = letter.and_then(|letter| Some((letter, Form::of(letter)?)));
+        let printer = kind == MachineKind::Printer;
+        let (letter, form) = known
+            .filter(|(_, form)| match form {
+                Form::Slide => true,
+                Form::Turn => !printer,
+                Form::Extruder => printer,
+            })
+            .ok_or_else(|| {
+                let letters = kind.letters();
+                fault(format!(
+                    "the letter of an axis of a {kind} is one of {letters}"
+                ))
+            })?;
         let mut axis = Self {
             letter,
+            form,
             drive: Drive::Direct,
             motor: None,
             torque_limits: false,
@@ -77,6 +90,11 @@ impl DraftAxis {
             match drive_of(key, value) {
                 Some(found) => {
                     let found = found.map_err(fault)?;
+                    let pushes = matches!(found, Drive::Filament(_));
+                    if form == Form::Turn || pushes != (form == Form::Extruder) {
+                        let wrong = format!("`{key}` is no drive of this axis: leave it out");
+                        return Err(fault(wrong));
+                    }
                     if drive.replace(found).is_some() {
                         return Err(fault("it has two drives: keep one".to_owned()));
                     }
@@ -85,9 +103,15 @@ impl DraftAxis {
                 None => axis.take(key, value).map_err(fault)?,
             }
         }
-        let wanted = "it needs what drives it: screw=DIAMETERxLENGTHxLEAD, pinion=DIAMETERxWIDTH, \
-                      belt=TEETHxPITCHxWIDTH (all in mm), or drive=linear-motor";
-        axis.drive = drive.ok_or_else(|| fault(wanted.to_owned()))?;
+        let wanted = match form {
+            Form::Extruder => "it needs filament=MM, what a revolution of its wheels pushes",
+            _ => {
+                "it needs what drives it: screw=DIAMETERxLENGTHxLEAD, pinion=DIAMETERxWIDTH, \
+                 belt=TEETHxPITCHxWIDTH (all in mm), or drive=linear-motor"
+            }
+        };
+        let turning = Some(Drive::Turning).filter(|_| form == Form::Turn);
+        axis.drive = drive.or(turning).ok_or_else(|| fault(wanted.to_owned()))?;
         axis.check(kind).map_err(fault)?;
         Ok(axis)
     }
@@ -124,10 +148,16 @@ impl DraftAxis {
     }
 
     fn take(&mut self, name: &str, value: &str) -> Result<(), String> {
-        let key = KEYS.iter().find(|key| key.name == name).ok_or_else(|| {
-            let names: Vec<&str> = KEYS.iter().map(|key| key.name).collect();
+        let mut own = KEYS.iter().filter(|key| key.forms.contains(&self.form));
+        let key = own.clone().find(|key| key.name == name).ok_or_else(|| {
+            let names: Vec<&str> = own.by_ref().map(|key| key.name).collect();
+            let drives = match self.form {
+                Form::Slide => "motor, screw, pinion, belt and drive",
+                Form::Turn => "and motor",
+                Form::Extruder => "motor and filament",
+            };
             format!(
-                "`{name}` is not known; there are {}, motor, screw, pinion, belt and drive",
+                "`{name}` is not known; there are {}, {drives}",
                 names.join(", ")
             )
         })?;
@@ -139,7 +169,7 @@ impl DraftAxis {
     }
 
     fn check(&self, kind: MachineKind) -> Result<(), String> {
-        for name in ["rapid_mm_min", "accel_mm_s2", "table_kg"] {
+        for name in self.form.needed() {
             if self.get(name).is_none() {
                 return Err(format!("it needs `{name}`"));
             }
@@ -172,29 +202,39 @@ impl DraftAxis {
         let Some((motor, _)) = &self.motor else {
             return Ok(());
         };
-        let (Some(max_rpm), Some(travel_mm)) = (motor.max_rpm, self.travel_mm()) else {
+        let (Some(max_rpm), Some(travel)) = (motor.max_rpm, self.travel()) else {
             return Ok(());
         };
-        let rpm = self.get("rapid_mm_min").unwrap_or(0.0) / travel_mm;
+        let rpm = self.rapid() / travel;
         if rpm <= max_rpm * (1.0 + 1e-9) {
             return Ok(());
         }
+        let rapid = self.form.needed().first().copied().unwrap_or_default();
         Err(format!(
             "its rapid turns the motor at {rpm:.0} rpm, and {} has {max_rpm} at most: at most \
-             rapid_mm_min={:.0}",
+             {rapid}={:.0}",
             motor.name,
-            (max_rpm * travel_mm).floor()
+            (max_rpm * travel).floor()
         ))
     }
 
-    /// How far a revolution of the motor moves it, mm; `None` for a linear motor.
+    /// Its rapid speed, mm/min or degrees/min.
     #[must_use]
-    pub fn travel_mm(&self) -> Option<f64> {
+    pub fn rapid(&self) -> f64 {
+        let rapid = self.get("rapid_mm_min").or(self.get("rapid_deg_min"));
+        rapid.unwrap_or(0.0)
+    }
+
+    /// How far a revolution of the motor moves it, mm or degrees; `None` for a linear motor.
+    #[must_use]
+    pub fn travel(&self) -> Option<f64> {
         let gear = self.get("gear_ratio").unwrap_or(1.0);
         let own = match self.drive {
             Drive::Screw([_, _, lead]) => lead,
             Drive::Pinion([diameter, _]) => PI * diameter,
             Drive::Belt([teeth, pitch, _]) => teeth * pitch,
+            Drive::Filament(length) => length,
+            Drive::Turning => 360.0,
             Drive::Direct => return None,
         };
         Some(own / gear)
@@ -223,7 +263,9 @@ impl DraftAxis {
     pub(super) fn lacks(&self, field: &str, kind: MachineKind) -> bool {
         match field {
             "rotor inertia" => self.drive != Drive::Direct && self.rotor_kg_m2().is_none(),
-            "friction" => self.get("guide_friction").is_none() && self.get("coulomb_n").is_none(),
+            "friction" => ["guide_friction", "coulomb_n", "friction_nm"]
+                .iter()
+                .all(|name| self.get(name).is_none()),
             "counterweight" => {
                 kind.is_vertical(self.letter) && self.get("counterweight_kg").is_none()
             }
@@ -270,6 +312,8 @@ fn drive_of(key: &str, value: &str) -> Option<Result<Drive, String>> {
         "screw" => sizes(key, value, "DIAMETERxLENGTHxLEAD in mm").map(Drive::Screw),
         "pinion" => sizes(key, value, "DIAMETERxWIDTH in mm").map(Drive::Pinion),
         "belt" => sizes(key, value, "TEETHxPITCHxWIDTH, the last two in mm").map(Drive::Belt),
+        "filament" => sizes(key, value, "MM, what a revolution of its wheels pushes")
+            .map(|[length]: [f64; 1]| Drive::Filament(length)),
         "drive" if value.trim() == "linear-motor" => Ok(Drive::Direct),
         "drive" => Err(format!("`drive={value}`: there is drive=linear-motor")),
         _ => return None,

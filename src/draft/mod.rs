@@ -6,6 +6,7 @@
 
 mod axis;
 mod key;
+mod parts;
 mod write;
 
 use std::f64::consts::TAU;
@@ -13,11 +14,11 @@ use std::fmt;
 
 use thiserror::Error;
 
-use crate::machine::units::M_PER_MM;
 use crate::machine::{ALL_AXES, Machine};
 
 pub use axis::{DraftAxis, Drive};
-pub use key::KEYS;
+pub use key::{Form, KEYS};
+pub use parts::{DraftLoad, DraftSpindle};
 
 /// Kinds of machines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,6 +59,15 @@ impl MachineKind {
         }
     }
 
+    /// Letters that its axes can have.
+    #[must_use]
+    pub fn letters(self) -> &'static str {
+        match self {
+            Self::Printer => "XYZUVWE",
+            _ => "XYZUVWABC",
+        }
+    }
+
     /// Whether an axis goes up and down.
     #[must_use]
     pub fn is_vertical(self, letter: char) -> bool {
@@ -88,6 +98,10 @@ pub struct Draft {
     pub base_load_w: Option<f64>,
     /// The axes.
     pub axes: Vec<DraftAxis>,
+    /// The spindle.
+    pub spindle: Option<DraftSpindle>,
+    /// Heaters, pumps and the like.
+    pub loads: Vec<DraftLoad>,
 }
 
 /// Why there is no machine file.
@@ -107,6 +121,9 @@ pub enum DraftError {
     /// There is none.
     #[error("a machine needs an axis: --axis X:rapid_mm_min=…,accel_mm_s2=…,table_kg=…")]
     NoAxes,
+    /// The spindle or a load is not described as it should be.
+    #[error("{0}")]
+    Part(String),
     /// A power that is none.
     #[error("{0} must be {1}, in W")]
     Power(&'static str, &'static str),
@@ -151,13 +168,13 @@ impl Draft {
             let own = found
                 .filter(|(id, _)| char::from(id.letter()) == draft.letter)
                 .find_map(|(_, axis)| axis.as_ref());
-            let (Some((motor, _)), Some(travel_mm), Some(axis)) =
-                (&draft.motor, draft.travel_mm(), own)
+            let (Some((motor, _)), Some(travel), Some(axis)) = (&draft.motor, draft.travel(), own)
             else {
                 continue;
             };
-            // N·m at the motor for each N at the load: the travel of a radian.
-            let lever_m = travel_mm * M_PER_MM / TAU;
+            // N·m at the motor for each N at the load: the travel of a radian. For an axis that
+            // turns: for each N·m.
+            let lever_m = travel * axis.si_per_unit / TAU;
             let steady_nm = (axis.coulomb_n + axis.gravity_n.abs()) * lever_m;
             let moving_n = axis.mass_kg * axis.accel_mm_s2 * axis.si_per_unit;
             let needed_nm = steady_nm + moving_n * lever_m;
@@ -165,9 +182,14 @@ impl Draft {
             if needed_nm > motor.most_nm() {
                 draft.torque_limits = true;
                 said.push(format!(
-                    "{letter}: {} mm/s2 takes {needed_nm:.3} N m of the motor {name}, which has \
+                    "{letter}: {} {}/s2 takes {needed_nm:.3} N m of the motor {name}, which has \
                      {} at most: the file has its torque, which limits the acceleration",
                     axis.accel_mm_s2,
+                    if draft.form == Form::Turn {
+                        "degrees"
+                    } else {
+                        "mm"
+                    },
                     motor.most_nm()
                 ));
             }
@@ -197,6 +219,13 @@ impl Draft {
                         is not checked";
             said.push(text.to_owned());
         }
+        if self.spindle.is_none() && self.kind != MachineKind::Printer {
+            said.push("no spindle given: its power does not count".to_owned());
+        }
+        if self.loads.is_empty() && self.kind == MachineKind::Printer {
+            let text = "no heaters given: they do not count, and draw most of a printer's power";
+            said.push(text.to_owned());
+        }
         if self.base_load_w.is_none() {
             said.push("no base load given: counted as 0 W".to_owned());
         }
@@ -207,7 +236,8 @@ impl Draft {
             ),
             (
                 "friction",
-                "counted as 0 N; real axes have some, which `gwatt identify` finds",
+                "counted as none; it often takes 2 to 10 % of the largest force, and `gwatt \
+                 identify` finds it",
             ),
             ("efficiency", "counted as 1; the drive's losses come on top"),
             ("counterweight", "the whole weight counts"),

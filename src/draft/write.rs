@@ -3,12 +3,14 @@
 use std::fmt::Write as _;
 
 use super::axis::{DraftAxis, Drive};
-use super::{Draft, MachineKind};
+use super::{Draft, DraftLoad, DraftSpindle, Form, MachineKind};
 
 /// Acceleration of gravity, m/s² (standard gravity, CGPM 1901).
 const GRAVITY_M_S2: f64 = 9.80665;
 /// Where comments next to fields begin.
 const COLUMN: usize = 29;
+/// Filament from the wheels to the nozzle, kg: not more than a gram.
+const FILAMENT_KG: f64 = 0.001;
 
 pub(super) fn machine_file(draft: &Draft, sums: &str) -> String {
     let mut out = String::new();
@@ -49,6 +51,12 @@ pub(super) fn machine_file(draft: &Draft, sums: &str) -> String {
     for axis in &draft.axes {
         axis_table(&mut out, axis, draft.kind);
     }
+    if let Some(spindle) = &draft.spindle {
+        spindle_table(&mut out, spindle);
+    }
+    for load in &draft.loads {
+        load_table(&mut out, load);
+    }
     out.push_str("\n[limits]\n");
     line(
         &mut out,
@@ -62,34 +70,29 @@ pub(super) fn machine_file(draft: &Draft, sums: &str) -> String {
 fn axis_table(out: &mut String, axis: &DraftAxis, kind: MachineKind) {
     out.push('\n');
     motor(out, axis);
-    let _ = writeln!(out, "[axes.{}]\nkind = \"linear\"", axis.letter);
+    let linear = if axis.form == Form::Turn {
+        "rotary"
+    } else {
+        "linear"
+    };
+    let _ = writeln!(out, "[axes.{}]\nkind = \"{linear}\"", axis.letter);
     let mut field = |name: &str, value: Option<f64>, comment: &str| {
         if let Some(value) = value {
             line(out, name, value, comment);
         }
     };
-    field("rapid_mm_min", axis.get("rapid_mm_min"), "");
-    field("accel_mm_s2", axis.get("accel_mm_s2"), "");
-    field("jerk_mm_s3", axis.get("jerk_mm_s3"), "");
-    let moved = rounded(axis.moved_kg());
-    let table = shown(axis.get("table_kg").unwrap_or(0.0));
-    // A weight on a chain is accelerated too; a cylinder of gas is not, and counts higher.
-    let balancing = axis.get("counterweight_kg");
-    let parts = [
-        ("workpiece", axis.get("workpiece_kg")),
-        ("counterweight", balancing),
-    ];
-    let mut comment = String::new();
-    for (name, mass_kg) in parts {
-        if let Some(mass_kg) = mass_kg {
-            if comment.is_empty() {
-                let _ = write!(comment, "table {table}");
-            }
-            let _ = write!(comment, " + {name} {}", shown(mass_kg));
-        }
+    for name in [
+        "rapid_mm_min",
+        "rapid_deg_min",
+        "accel_mm_s2",
+        "accel_deg_s2",
+        "jerk_mm_s3",
+        "jerk_deg_s3",
+    ] {
+        field(name, axis.get(name), "");
     }
-    let accelerated = rounded(moved + balancing.unwrap_or(0.0));
-    field("moved_mass_kg", Some(accelerated), &comment);
+    let (name, moved, comment) = moved(axis);
+    field(name, Some(moved), &comment);
     let rotor = axis.rotor_kg_m2().unwrap_or(0.0);
     field("rotor_kg_m2", Some(rotor), whose_rotor(axis));
     field("gear_ratio", axis.get("gear_ratio"), "");
@@ -103,6 +106,12 @@ fn axis_table(out: &mut String, axis: &DraftAxis, kind: MachineKind) {
         Shown::Belt([teeth, pitch, width]) => {
             format!("pulley = {{ teeth = {teeth}, pitch_mm = {pitch}, width_mm = {width} }}\n")
         }
+        Shown::Filament(length) => {
+            format!(
+                "{:COLUMN$}# filament per revolution of its wheels\n",
+                format!("lead_mm = {length}")
+            )
+        }
         Shown::Direct => String::new(),
     };
     out.push_str(&drive);
@@ -112,6 +121,8 @@ fn axis_table(out: &mut String, axis: &DraftAxis, kind: MachineKind) {
         }
     };
     field("coulomb_n", axis.get("coulomb_n"), "");
+    field("friction_nm", axis.get("friction_nm"), "");
+    let moved = rounded(axis.moved_kg());
     if let Some(share) = axis.get("guide_friction") {
         let force = share * moved * GRAVITY_M_S2;
         let comment = format!(
@@ -136,6 +147,59 @@ fn axis_table(out: &mut String, axis: &DraftAxis, kind: MachineKind) {
     }
     field("efficiency", axis.get("efficiency"), "");
     torque(out, axis);
+}
+
+/// What moves next to the rotor: the field, its figure, and what it is made of.
+fn moved(axis: &DraftAxis) -> (&'static str, f64, String) {
+    let [table, workpiece] = match axis.form {
+        Form::Slide => ["table_kg", "workpiece_kg"],
+        Form::Turn => ["table_kg_m2", "workpiece_kg_m2"],
+        Form::Extruder => {
+            let what = "the filament, which weighs next to nothing".to_owned();
+            return ("moved_mass_kg", FILAMENT_KG, what);
+        }
+    };
+    let own = axis.get(table).unwrap_or(0.0);
+    // A weight on a chain is accelerated too; a cylinder of gas is not, and counts higher.
+    let parts = [
+        ("workpiece", axis.get(workpiece)),
+        ("counterweight", axis.get("counterweight_kg")),
+    ];
+    let mut comment = String::new();
+    let mut sum = own;
+    for (name, part) in parts {
+        if let Some(part) = part {
+            if comment.is_empty() {
+                let _ = write!(comment, "table {}", shown(own));
+            }
+            let _ = write!(comment, " + {name} {}", shown(part));
+            sum += part;
+        }
+    }
+    let field = match axis.form {
+        Form::Turn => "moved_inertia_kg_m2",
+        _ => "moved_mass_kg",
+    };
+    (field, rounded(sum), comment)
+}
+
+fn spindle_table(out: &mut String, spindle: &DraftSpindle) {
+    out.push_str("\n[spindle]\n");
+    for (name, value) in &spindle.figures {
+        line(out, name, *value, "");
+    }
+}
+
+fn load_table(out: &mut String, load: &DraftLoad) {
+    let quoted: Vec<String> = load.on.iter().map(|word| format!("\"{word}\"")).collect();
+    let _ = match quoted.as_slice() {
+        [one] => writeln!(out, "\n[[load]]\non = {one}"),
+        _ => writeln!(out, "\n[[load]]\non = [{}]", quoted.join(", ")),
+    };
+    if let Some(off) = &load.off {
+        let _ = writeln!(out, "off = \"{off}\"");
+    }
+    line(out, "power_w", load.power_w, "");
 }
 
 /// What is said of its rotor.
@@ -170,12 +234,11 @@ fn motor(out: &mut String, axis: &DraftAxis) {
 
 /// The torque of its motor, where the acceleration that is asked for needs more.
 fn torque(out: &mut String, axis: &DraftAxis) {
-    let (Some((motor, _)), Some(travel_mm), true) =
-        (&axis.motor, axis.travel_mm(), axis.torque_limits)
+    let (Some((motor, _)), Some(travel), true) = (&axis.motor, axis.travel(), axis.torque_limits)
     else {
         return;
     };
-    let rapid_rpm = axis.get("rapid_mm_min").unwrap_or(0.0) / travel_mm;
+    let rapid_rpm = axis.rapid() / travel;
     let end_rpm = motor.max_rpm.unwrap_or(rapid_rpm).max(rapid_rpm).ceil();
     let most = shown(motor.most_nm());
     let curve = format!(
@@ -193,6 +256,7 @@ enum Shown {
     Screw([String; 3]),
     Pinion([String; 2]),
     Belt([String; 3]),
+    Filament(String),
     Direct,
 }
 
@@ -202,7 +266,8 @@ impl Drive {
             Self::Screw(sizes) => Shown::Screw(sizes.map(show)),
             Self::Pinion(sizes) => Shown::Pinion(sizes.map(show)),
             Self::Belt(sizes) => Shown::Belt(sizes.map(show)),
-            Self::Direct => Shown::Direct,
+            Self::Filament(length) => Shown::Filament(show(length)),
+            Self::Direct | Self::Turning => Shown::Direct,
         }
     }
 }

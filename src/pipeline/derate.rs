@@ -10,7 +10,7 @@ use crate::machine::Machine;
 use crate::power::Measure;
 
 /// Shares of the peak powers that are tried, until one is enough.
-const SHARES: [f64; 5] = [0.75, 0.55, 0.4, 0.3, 0.2];
+const SHARES: [f64; 8] = [0.75, 0.55, 0.4, 0.3, 0.2, 0.13, 0.08, 0.05];
 /// Halvings between the first share that is enough and the one before.
 const HALVINGS: u32 = 4;
 /// The rule of what is said where there is no further round.

@@ -116,6 +116,16 @@ impl LeftFeeds {
         left.is_some_and(|left| !left.lost && left.users.iter().all(known))
     }
 
+    /// Whether all that count on the F that a line leaves are known.
+    pub(super) fn is_counted_on_openly(&self, line: LineKey) -> bool {
+        self.lines.get(&line).is_some_and(|left| !left.lost)
+    }
+
+    /// Whether a line that counts on an F can have its own written.
+    pub(super) fn can_have_its_feed(&self, line: LineKey) -> bool {
+        self.users.get(&line).is_some_and(User::can_have_its_feed)
+    }
+
     /// The lines that count on the F that a line leaves, each with its F.
     pub(super) fn users(&self, line: LineKey) -> impl Iterator<Item = (LineKey, Decision)> {
         let users = self.lines.get(&line).into_iter();

@@ -40,6 +40,8 @@ pub(super) struct Table {
     restored: HashMap<LineKey, Decision>,
 }
 
+mod spread;
+
 #[derive(Debug)]
 struct Entered {
     sight: Sight,
@@ -51,6 +53,10 @@ struct Entered {
     lowest_feed: Option<FeedValue>,
     /// The F that it leaves may be another than the original's.
     leaves_feed: bool,
+    /// It counts on an F and cuts by it alone, so that a lower one may be written for all runs.
+    cuts_by_feed: bool,
+    /// Its F may be lowered, together with that of those that count on what it leaves.
+    lowers: bool,
     /// Corners were taken in one way.
     one_corner: bool,
     /// One of its runs counts on no F.
@@ -150,6 +156,7 @@ impl Table {
         if let Some(entered) = self.lines.get_mut(&line) {
             entered.one_corner &= entered.sight.corner == sight.corner;
             entered.lacks_feed |= entry.lacks_feed();
+            entered.cuts_by_feed &= spread::cuts_by_feed(entry, self.skips);
             entered.one_feed &= entered.sight.feed == sight.feed;
             let length = |feed: &FeedValue| feed.value * feed.mm_per_unit;
             let known = entered.lowest_feed.into_iter().chain(sight.feed);
@@ -167,6 +174,8 @@ impl Table {
             unanimous: true,
             one_feed: true,
             leaves_feed: false,
+            cuts_by_feed: spread::cuts_by_feed(entry, self.skips),
+            lowers: false,
             one_corner: true,
             lacks_feed: entry.lacks_feed(),
             decision: None,
@@ -196,6 +205,7 @@ impl Table {
                 entered.leaves_feed = self.left_feeds.may_differ(*key, writable);
             }
         }
+        self.settle_lowered();
         for (key, entered) in &self.lines {
             let fixed = key.0 >= self.programs
                 || !entered.unanimous
@@ -223,8 +233,9 @@ impl Table {
             return Some(IN_A_FILE);
         }
         let entered = self.lines.get(&line);
-        let alike = entered
-            .is_none_or(|entered| entered.unanimous && (entered.one_feed || entered.leaves_feed));
+        let alike = entered.is_none_or(|entered| {
+            entered.unanimous && (entered.one_feed || entered.leaves_feed || entered.lowers)
+        });
         (!alike).then_some(if self.skips {
             "with and without blocks that may be skipped, it runs under feeds or modes that differ"
         } else {
@@ -415,40 +426,6 @@ impl Table {
             };
             let decision = entered.decision.get_or_insert_with(|| Box::new(stopped));
             decision.change.stop = true;
-        }
-    }
-
-    /// Where lines leave another F than the original's, all that count on it get theirs.
-    pub(super) fn spread_left_feeds(&mut self) {
-        let mut found = Vec::new();
-        for (line, entered) in &mut self.lines {
-            let decision = entered.decision.as_mut();
-            let Some(decision) = decision.filter(|_| entered.leaves_feed) else {
-                continue;
-            };
-            decision.around = FeedAround::LeftAfter;
-            // One F for all runs: none is faster for it.
-            let one = !decision.change.as_feed && decision.facts.feed_word.is_none();
-            let lowest = entered.lowest_feed.filter(|_| one);
-            if let (Some(feed), Some(lowest)) = (&mut decision.change.feed, lowest) {
-                *feed =
-                    feed.min(lowest.value * lowest.mm_per_unit / decision.facts.feed_mm_per_unit);
-            }
-            if decision.change.feed.is_some() {
-                found.extend(self.left_feeds.users(*line));
-            }
-        }
-        for (line, restored) in found {
-            let entered = self.lines.get_mut(&line);
-            match entered.and_then(|entered| entered.decision.as_deref_mut()) {
-                Some(decision) => {
-                    decision.before = restored.before;
-                    decision.around = FeedAround::NotKnownBefore;
-                }
-                None => {
-                    self.restored.entry(line).or_insert(restored);
-                }
-            }
         }
     }
 

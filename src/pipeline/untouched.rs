@@ -36,7 +36,7 @@ pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static s
         REFERENCE if further => {
             if language.family.facts().reference_in_parameters {
                 "the way is gone by a feed before it where the point is known: give the \
-                 control's --parameters"
+                 control's --parameters, or G30 under [offsets] in the machine file"
             } else {
                 "the way is gone by a feed before it where the places are known: \
                  further_reference_mm of the axes, the work offset ([offsets] or --parameters) \
@@ -45,7 +45,7 @@ pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static s
         }
         REFERENCE if language.family.facts().reference_in_parameters => {
             "the way is gone by a feed before it where the places are known: give the control's \
-             --parameters, or reference_mm of the axes and [offsets] in the machine file"
+             --parameters, or G28 and the work offset under [offsets] in the machine file"
         }
         REFERENCE | MACHINE_COORDINATES => {
             "the way is gone by a feed before it where the places are known: reference_mm of \

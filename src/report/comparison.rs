@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use super::aligned::aligned;
+use super::aligned::{GAP, aligned, widths};
 use super::checked::Verdict;
 use super::figure::Figure;
 use super::quantity::{duration, energy, power};
@@ -14,6 +14,8 @@ use crate::pipeline::{Failure, OverTime, Summary};
 
 /// Changes that are listed a program.
 const LISTED_MAX: usize = 10;
+/// Columns that a name of a program needs at least to stand next to its figures.
+const NAME_LEAST: usize = 18;
 
 /// A move that fits on one machine only.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -95,27 +97,12 @@ fn exceeded_beyond<'a>(one: &'a Summary, other: &'a Summary) -> impl Iterator<It
 /// A table with a line a program, and below it what begins and ceases to fit.
 #[must_use]
 pub fn comparison_text(comparisons: &[Comparison], from: &str, to: &str, style: Style) -> String {
-    let mut rows = vec![
-        [
-            "program",
-            "peak",
-            "time",
-            "energy",
-            "begin to fit",
-            "cease to fit",
-        ]
-        .map(String::from),
-    ];
-    let mut changes = String::new();
-    for comparison in comparisons {
-        let program = &comparison.program;
+    let pair = |a: String, b: String| format!("{a} → {b}");
+    let figures = comparisons.iter().map(|comparison| {
         let (Ok(before), Ok(after)) = (&comparison.from, &comparison.to) else {
-            rows.push([program, "refused", "", "", "", ""].map(String::from));
-            continue;
+            return ["refused", "", "", "", ""].map(String::from);
         };
-        let pair = |a: String, b: String| format!("{a} → {b}");
-        rows.push([
-            program.clone(),
+        [
             pair(power(before.peak_w), power(after.peak_w)),
             pair(duration(before.duration_s), duration(after.duration_s)),
             pair(
@@ -124,40 +111,86 @@ pub fn comparison_text(comparisons: &[Comparison], from: &str, to: &str, style: 
             ),
             comparison.begin.to_string(),
             comparison.cease.to_string(),
-        ]);
+        ]
+    });
+    let heads = ["peak", "time", "energy", "begin to fit", "cease to fit"].map(String::from);
+    let figures: Vec<_> = std::iter::once(heads).chain(figures).collect();
+    let taken: usize = widths(&figures).iter().map(|width| width + GAP).sum();
+    let room = style.columns.unwrap_or(usize::MAX).saturating_sub(taken);
+    // Where hardly anything is left for names, they stand on lines of their own.
+    let own_lines = style.columns.is_some() && room < NAME_LEAST;
+    let names = comparisons.iter().map(|it| it.program.as_str());
+    let names: Vec<&str> = std::iter::once("program").chain(names).collect();
+    let table = if own_lines {
+        let mut text = String::new();
+        let rows = aligned(&figures, "  ");
+        let mut rows = rows.lines();
+        let _ = writeln!(text, "{}", rows.next().unwrap_or_default());
+        for (name, row) in names.iter().skip(1).zip(rows) {
+            let columns = style.columns.unwrap_or(usize::MAX);
+            let _ = writeln!(text, "{}\n{row}", style.cut_name(name, columns));
+        }
+        text
+    } else {
+        let rows = names.iter().zip(&figures).map(|(name, row)| {
+            let [peak, time, energy, begin, cease] = row.clone();
+            let name = style.cut_name(name, room.saturating_sub(GAP));
+            [name, peak, time, energy, begin, cease]
+        });
+        aligned(&rows.collect::<Vec<_>>(), "")
+    };
+    let mut changes = String::new();
+    for comparison in comparisons {
+        let (Ok(before), Ok(after)) = (&comparison.from, &comparison.to) else {
+            continue;
+        };
         changes.push_str(&listed(comparison, style));
         for (one, other, begins) in [(after, before, false), (before, after, true)] {
             for limit in exceeded_beyond(one, other) {
-                let fit = begins_or_ceases(begins, style);
-                let _ = writeln!(changes, "{program}: {} {fit}", limit.title());
+                let fit = begins_or_ceases(begins, 1, style);
+                let _ = writeln!(changes, "{}: {} {fit}", comparison.program, limit.title());
             }
         }
     }
-    format!("from {from}\nto   {to}\n\n{}{changes}", aligned(&rows, ""))
+    format!("from {from}\nto   {to}\n\n{table}{changes}")
 }
 
-fn begins_or_ceases(begins: bool, style: Style) -> String {
-    if begins {
-        style.good("begins to fit")
-    } else {
-        style.bad("ceases to fit")
+fn begins_or_ceases(begins: bool, count: usize, style: Style) -> String {
+    match (begins, count) {
+        (true, 1) => style.good("begins to fit"),
+        (true, _) => style.good("begin to fit"),
+        (false, 1) => style.bad("ceases to fit"),
+        (false, _) => style.bad("cease to fit"),
     }
 }
 
+/// The changes of a program: a row for each file and each way.
 fn listed(comparison: &Comparison, style: Style) -> String {
-    let mut text = String::new();
+    let mut rows: Vec<(&str, bool, Vec<String>)> = Vec::new();
     for change in &comparison.changes {
-        let fit = begins_or_ceases(change.begins, style);
-        let program = &comparison.program;
-        let file = match change.file.as_str() {
+        let line = change.line.to_string();
+        let own = rows
+            .iter_mut()
+            .find(|(file, begins, _)| *file == change.file && *begins == change.begins);
+        match own {
+            Some((_, _, lines)) => lines.push(line),
+            None => rows.push((&change.file, change.begins, vec![line])),
+        }
+    }
+    let program = &comparison.program;
+    let mut text = String::new();
+    for (file, begins, lines) in rows {
+        let noun = if lines.len() == 1 { "line" } else { "lines" };
+        let fit = begins_or_ceases(begins, lines.len(), style);
+        let file = match file {
             "" => String::new(),
             file => format!(" of {file}"),
         };
-        let _ = writeln!(text, "{program}: line {}{file} {fit}", change.line);
+        let _ = writeln!(text, "{program}: {noun} {}{file} {fit}", lines.join(", "));
     }
     let more = comparison.begin + comparison.cease - comparison.changes.len() as u64;
     if more > 0 {
-        let _ = writeln!(text, "{}: and {more} more", comparison.program);
+        let _ = writeln!(text, "{program}: and {more} more");
     }
     text
 }

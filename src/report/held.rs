@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::baseline::{Baseline, Known};
+use super::known_comment::{Comment, comment};
 use crate::pipeline::{OverTime, Summary, Unfit};
 
 /// What a baseline makes of the findings of a program.
@@ -22,6 +23,9 @@ pub struct Held {
     grown: Vec<String>,
     /// What it has and the program has no more, in words.
     gone: Vec<String>,
+    /// Comments that look like those of known findings and are none, in words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    unclear: Vec<String>,
     /// Places of the known ones.
     #[serde(skip)]
     places: BTreeSet<Place>,
@@ -49,14 +53,69 @@ impl Held {
     /// Holds the findings of `program` against those of `baseline`.
     #[must_use]
     pub fn new(baseline: &Baseline, program: &str, summary: &Summary) -> Self {
-        let now = Known::of(summary);
+        Self::default().against(baseline, program, summary, &Known::of(summary))
+    }
+
+    /// The same, where comments that name findings of their own lines count too. What such a
+    /// comment covers is not looked for in the baseline.
+    #[must_use]
+    pub fn with_comments(baseline: &Baseline, program: &str, summary: &Summary) -> Self {
         let mut held = Self::default();
+        let mut others = Vec::new();
+        for unfit in &summary.unfit {
+            let found = Known::of_move(unfit);
+            let own = match comment(&unfit.text) {
+                Comment::Known(rule, value, limit) => found.as_commented(rule, value, limit),
+                Comment::Unclear => {
+                    let text = format!(
+                        "the comment of line {} is not understood: write (gwatt: known {} {})",
+                        found.line,
+                        found.rule,
+                        figure(&found)
+                    );
+                    held.unclear.push(text);
+                    others.push(found);
+                    continue;
+                }
+                Comment::None => {
+                    others.push(found);
+                    continue;
+                }
+            };
+            if own.rule == found.rule && found.is_covered_by(&own) {
+                held.known += 1;
+                held.places.insert(place(&found));
+            } else {
+                let text = format!(
+                    "{}, its comment has {} {}",
+                    words(&found),
+                    own.rule,
+                    figure(&own)
+                );
+                held.grown.push(text);
+                others.push(found);
+            }
+        }
+        let over_time = Known::of(summary).into_iter().skip(summary.unfit.len());
+        others.extend(over_time);
+        held.against(baseline, program, summary, &others)
+    }
+
+    /// Holds these findings against those of `baseline`.
+    fn against(
+        mut self,
+        baseline: &Baseline,
+        program: &str,
+        summary: &Summary,
+        now: &[Known],
+    ) -> Self {
+        let held = &mut self;
         let mut then: BTreeMap<_, Vec<&Known>> = BTreeMap::new();
         for known in baseline.known(program) {
             then.entry(known.key()).or_default().push(known);
         }
         let mut groups: BTreeMap<_, Vec<&Known>> = BTreeMap::new();
-        for found in &now {
+        for found in now {
             groups.entry(found.key()).or_default().push(found);
         }
         for (key, found) in groups {
@@ -66,7 +125,7 @@ impl Held {
         held.gone.extend(gone.map(|known| words(known)));
         let listed: u64 = summary.unfit.iter().map(|unfit| unfit.runs).sum();
         held.not_listed = summary.unfit_count.saturating_sub(listed);
-        held
+        self
     }
 
     /// Findings that look alike: the worst is compared with the worst.
@@ -136,6 +195,9 @@ impl Held {
         }
         for gone in &self.gone {
             let _ = writeln!(text, "  gone: {gone}");
+        }
+        for unclear in &self.unclear {
+            let _ = writeln!(text, "  {unclear}");
         }
         text
     }

@@ -25,6 +25,7 @@ mod identify_page;
 mod json;
 #[cfg(feature = "junit")]
 mod junit;
+mod known_comment;
 mod level_table;
 mod line_edits;
 mod mass_table;

@@ -140,7 +140,11 @@ fn worst(summary: &Summary, style: Style) -> String {
         let lines = text.lines().zip(&helps);
         let lines = lines.map(|(line, help)| match *help {
             "" => format!("{line}\n"),
-            help => format!("{line}\n{INDENT}{HELPS}{help}\n"),
+            help => {
+                let indent = INDENT.len() + HELPS.chars().count();
+                let help = style.wrapped(help, indent);
+                format!("{line}\n{INDENT}{HELPS}{help}\n")
+            }
         });
         text = lines.collect();
     }

@@ -281,7 +281,7 @@ impl<'m> Rewriter<'m> {
     ) -> bool {
         let known = match around {
             FeedAround::PutBack | FeedAround::LeftAfter => true,
-            FeedAround::NotKnownBefore => false,
+            FeedAround::NotKnownBefore | FeedAround::Stated => false,
             FeedAround::Within { known_before, .. } => known_before,
         };
         self.written = Written {
@@ -303,7 +303,7 @@ impl<'m> Rewriter<'m> {
         // Where only F was not known before, all is as after the original's block.
         let changes = known || within || !view.change.is_none();
         if changes && around.is_put_back() {
-            let left = around == FeedAround::LeftAfter;
+            let left = matches!(around, FeedAround::LeftAfter | FeedAround::Stated);
             let feed = view.after.feed.filter(|_| !left);
             let after = Mark {
                 feed,

@@ -171,3 +171,43 @@ fn the_example_is_true() {
     let example = fs::read_to_string(root.join("examples/known.json")).unwrap();
     assert_eq!(shop.get("known.json"), example);
 }
+
+/// A comment makes the finding of its own line known, where it is asked for, up to its figures.
+#[test]
+fn comments_make_findings_known() {
+    let shop = Shop::new();
+    let with = |comment: &str, options: &[&str]| {
+        let line = "G0 X200 Y200 Z200";
+        assert!(STEEP.contains(line));
+        shop.put(
+            "steep.ngc",
+            STEEP.replace(line, &format!("{line} {comment}")),
+        );
+        shop.run(&[&["check", "steep.ngc", "-m", "three-axis"], options].concat())
+    };
+    let ask = ["--known-comments"];
+    let known = "(gwatt: known peak-power 7511 W of 3600 W)";
+    let ran = with(known, &ask);
+    assert_eq!(ran.code, 0, "{}", ran.stdout);
+    assert!(
+        ran.stdout.ends_with("  baseline: 1 known, 0 new\n"),
+        "{}",
+        ran.stdout
+    );
+    assert_eq!(with(known, &[]).code, 1);
+    let said = |comment: &str| {
+        let ran = with(comment, &ask);
+        assert_eq!(ran.code, 1, "{}", ran.stdout);
+        let (_, text) = ran.stdout.split_once("  baseline: ").unwrap();
+        text.to_owned()
+    };
+    insta::assert_snapshot!(said("(gwatt: known peak-power 7510 W of 3600 W)"), @r"
+    0 known, 1 new
+      grown: peak-power in line 2, 7510.8 W of 3600.0 W: G0 X200 Y200 Z200 (gwatt: known peak-power 7510 W of 3600 W), its comment has peak-power 7510.0 W of 3600.0 W
+    ");
+    insta::assert_snapshot!(said("(gwatt: known peak-power 7511 W of 4000 W)"), @"");
+    insta::assert_snapshot!(said("(gwatt: known regen-power 9000 W of 3600 W)"), @"");
+    insta::assert_snapshot!(said("(gwatt: known)"), @"");
+    let refused = with(known, &["--known-comments", "--write-baseline", "b.json"]);
+    assert_eq!(refused.code, 2);
+}

@@ -253,10 +253,22 @@ fn grbl_s_dollar_lines_are_read() {
     let peak = note("$H (home)\n", "how fast $H homes is not known");
     assert_ne!(plain.stdout.lines().next(), Some(peak.as_str()));
     note("$H\n", "where $H ends is not known");
-    refused(
-        &check("$120=10\n"),
-        "$120 is a setting that may change how the machine moves",
+    // What a setting permits is no more than the machine file, which counts.
+    let lower = note(
+        "$120=10\n$110=10\n$11=0.0001\n$32=0\n$130=300\n",
+        "settings count as the machine file has them",
     );
+    let peak = |text: &str| text.split(" (line").next().map(str::to_owned);
+    assert_eq!(peak(&plain.stdout), peak(&lower));
+    for setting in [
+        "$120=1e6", "$110=1e6", "$11=5", "$32=1", "$115=1", "$100=250", "$120=-1",
+    ] {
+        let number = setting.split('=').next().unwrap();
+        refused(
+            &check(&format!("{setting}\n")),
+            &format!("{number} is a setting that may change how the machine moves"),
+        );
+    }
     refused(
         &check("$J=G91 X1 F100\n"),
         "$J=G91 X1 F100 is a command of grbl",

@@ -37,6 +37,25 @@ fn short_blocks_take_the_lower_feed() {
     assert_eq!(with, shop("fanuc", 450.0).limit(program, "--allow feed"));
 }
 
+/// SINUMERIK: a rapid that runs by itself stands at both ends, and so does the feed in its
+/// place, by G9: nothing blends it with what the control may have before it.
+#[test]
+fn a_rapid_by_itself_stays_so() {
+    for program in [
+        "G90 G71\nG0 X100 Y50\nM30\n",
+        "G90 G71 G64\nT1 D1\nG0 X100 Y50\n",
+    ] {
+        let (code, text, errors) = shop("siemens", 600.0).limit(program, "");
+        assert_eq!(code, 0, "{errors}");
+        assert!(text.contains("\nG9 G1 X100 Y50 F"), "{text}");
+    }
+    // Where the next rapid follows it goes on into that, as before.
+    let two = "G90 G71\nG0 X100 Y50\nG0 Z50\nM30\n";
+    let (code, text, errors) = shop("siemens", 600.0).limit(two, "");
+    assert_eq!(code, 0, "{errors}");
+    assert!(!text.contains("G9 "), "{text}");
+}
+
 /// Without a word for the feed the stop alone may do.
 #[test]
 fn stops_need_no_other_permission() {

@@ -203,3 +203,41 @@ fn slower_runs_keep_their_feed() {
         assert_eq!(text.matches(&shown).count(), runs, "{feed}: {text}");
     }
 }
+
+/// A subprogram whose blocks count on the F of each call: they get the lowest of all calls, where
+/// one of them has to be lowered in one call, and the blocks after the calls have their own. Both
+/// axes draw 100 W and 0.2357 m/s·(200·2.12 + 100) N/0.8 each at F20000.
+#[test]
+fn blocks_of_a_subprogram_get_the_lowest_feed() {
+    let sub = "O2000\nG1 X500. Y500.\nX0. Y0.\nM99\n";
+    let main = "O1000\nG90 G61\nG0 X0. Y0.\nG1 F8000.\nM98 P2000\nG1 X-10.\nF20000.\nM98 P2000\n\
+                G1 X-20.\nM30\n";
+    let own = main
+        .replace("X-10.", "X-10. F8000.")
+        .replace("X-20.", "X-20. F20000.");
+    let lowered = "O2000\nG1 X500. Y500. F8000.\nX0. Y0. F8000.\nM99\n";
+    assert_eq!(
+        limited("fanuc", 450.0, &format!("{main}{sub}")),
+        format!("{own}{lowered}")
+    );
+    // Blocks with an F of their own need none.
+    assert_eq!(
+        limited("fanuc", 450.0, &format!("{own}{sub}")),
+        format!("{own}{lowered}")
+    );
+    // What fits in all of them stays.
+    let whole = format!("{main}{sub}");
+    assert_eq!(limited("fanuc", 900.0, &whole), whole);
+    // The second block fits in every call, and gets the lowest all the same.
+    let short = sub.replace("X0. Y0.", "X490.");
+    let text = limited("fanuc", 450.0, &format!("{main}{short}"));
+    assert!(
+        text.contains("X500. Y500. F8000.\nX490. F8000.\n"),
+        "{text}"
+    );
+    // A rapid between them is none that could be lowered so.
+    let rapid = sub.replace("X0. Y0.", "G0 X0. Y0.\nG1 X1.");
+    let (code, text, errors) =
+        shop("fanuc", 450.0).limit(&format!("{main}{rapid}"), "--allow feed");
+    assert!(code == 0 || errors.contains(DIFFER), "{text}{errors}");
+}

@@ -92,9 +92,9 @@ fn feeds_have_a_point_where_it_matters() {
 fn reference_points_that_nobody_gave() {
     let program = "G21 G90 G54\nG0 X100 Y80 Z50\nG30\nM2\n";
     for (controller, word, help) in [
-        ("linuxcnc", "G28", "--parameters, or reference_mm"),
-        ("grbl", "G28", "--parameters, or reference_mm"),
-        ("linuxcnc", "G30", "give the control's --parameters"),
+        ("linuxcnc", "G28", "--parameters, or G28"),
+        ("grbl", "G28", "--parameters, or G28"),
+        ("linuxcnc", "G30", "give the control's --parameters, or G30"),
         ("fanuc", "G30 X0 Y0 Z0", "further_reference_mm of the axes"),
     ] {
         let shop = shop(
@@ -107,6 +107,44 @@ fn reference_points_that_nobody_gave() {
         assert_eq!((code, text.as_str()), (1, ""), "{controller} {program}");
         assert!(errors.contains(help), "{controller} {program}: {errors}");
     }
+}
+
+/// Points that the machine file has, as grbl prints them at `$#`: the way there is gone by a
+/// feed. Axes that it does not name stay unknown.
+#[test]
+fn reference_points_of_the_machine_file() {
+    let offsets =
+        |points: &str| format!("[offsets]\nG54 = {{ X = -450, Y = -330, Z = -300 }}\n{points}");
+    let program = "G21 G90 G54\nG0 X100 Y80 Z50\nG28\nM2\n";
+    for controller in ["grbl", "linuxcnc"] {
+        let points = "G28 = { X = -1, Y = -2, Z = -3 }\nG30 = { Z = -5 }";
+        let shop = shop(controller, 600.0, &offsets(points));
+        let text = written(&shop, program, "");
+        let there = ["X449", "Y328", "Z297"];
+        assert!(
+            there.iter().all(|place| text.contains(place)),
+            "{controller}: {text}"
+        );
+        written(&shop, "G21 G90 G54\nG0 X100\nG30 Z50\nM2\n", "");
+        let (code, _, errors) = shop.limit(&program.replace("G28", "G30"), "");
+        assert_eq!(code, 1, "{controller}");
+        assert!(
+            errors.contains("give the control's --parameters, or G30"),
+            "{errors}"
+        );
+    }
+    let refused = |controller: &str, point: &str| {
+        let shop = shop(controller, 600.0, &offsets(point));
+        shop.put("a.nc", program);
+        let (code, _, errors) = shop.run("check a.nc");
+        assert_eq!(code, 2);
+        errors
+    };
+    let errors = refused("fanuc", "G28 = { X = 0 }");
+    let said = "this control has its reference points in the tables of the axes";
+    assert!(errors.contains(said), "{errors}");
+    let errors = refused("grbl", "G28 = { C = 0 }");
+    assert!(errors.contains("the machine has no axis C"), "{errors}");
 }
 
 /// A point that is stored counts, one at machine zero too; axis by axis, and before `reference_mm`.

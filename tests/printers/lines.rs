@@ -108,7 +108,7 @@ fn extended_commands() {
     note unknown-moves
     note bed-levelling
     ");
-    assert_snapshot!(klipper("PRINT_START BED=60 EXTRUDER=200\n"), @"unknown-macro: `PRINT_START` is a macro or a command that this profile does not know");
+    assert_snapshot!(klipper("PARK_BED BED=60 EXTRUDER=200\n"), @"unknown-macro: `PARK_BED` is a macro or a command that this profile does not know");
     assert_snapshot!(marlin("SET_VELOCITY_LIMIT ACCEL=5\n"), @"unknown-macro: `SET_VELOCITY_LIMIT` is a macro or a command that this profile does not know");
     assert_snapshot!(reprap("if x > 1\n"), @"meta-command: `if`: branches, loops and variables are not supported");
     assert_snapshot!(reprap("M98 P\"a.g\"\n"), @"unsupported-code: M98 runs a macro file");

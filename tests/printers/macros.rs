@@ -67,8 +67,8 @@ fn macros_in_files_of_their_own() {
     );
     assert!(run("AGAIN\n").unwrap_err().starts_with("1 call-depth: "));
     assert_eq!(
-        run("END_PRINT\n").unwrap_err(),
-        "1 unknown-macro: `END_PRINT` is a macro or a command that this profile does not know | write what it comes to into a file END_PRINT.gcode in the program's folder or one given by --sub-path; or in the machine file, under [language], list it in `ignored_macros` if it moves nothing and sets nothing, or in `unknown_moves` if it moves and leaves feed and modes as they are"
+        run("OWN_MACRO\n").unwrap_err(),
+        "1 unknown-macro: `OWN_MACRO` is a macro or a command that this profile does not know | write what it comes to into a file OWN_MACRO.gcode in the program's folder or one given by --sub-path; or in the machine file, under [language], list it in `ignored_macros` if it moves nothing and sets nothing, or in `unknown_moves` if it moves and leaves feed and modes as they are, or in `unknown_macros` if nothing is known of it"
     );
     let own = load(
         "schema = 1\nname = \"test\"\ncontroller = \"klipper\"\n[converter]\npeak_power_w = 1e5\n\

@@ -60,7 +60,9 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
         };
         match name {
             "cartesian" => {}
-            "corexy" => kinematics::core(&mut found, log, &value.place, value.whole),
+            "corexy" => {
+                kinematics::core(&mut found, log, &value.place, value.whole, Some("corexy"));
+            }
             other => kinematics::refuse(log, &value.place, other),
         }
     }

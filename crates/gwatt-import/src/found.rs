@@ -124,6 +124,8 @@ pub(crate) struct Found {
     pub(crate) spindle_rpm: Option<Figure>,
     /// Two motors move two axes together.
     pub(crate) core: bool,
+    /// What machine files call that.
+    pub(crate) kinematics: Option<&'static str>,
 }
 
 impl Found {
@@ -141,6 +143,7 @@ impl Found {
             remarks: Vec::new(),
             spindle_rpm: None,
             core: false,
+            kinematics: None,
         }
     }
 

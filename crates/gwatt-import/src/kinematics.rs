@@ -7,15 +7,38 @@ use crate::text::{Log, Place};
 ///
 /// Masses: with motor angles `(x ± y)/r` the rotors have the energy `½·2J/r²·(ẋ² + ẏ²)`, so
 /// that each of the two axes has the rotors of both.
-pub(crate) fn core(found: &mut Found, log: &mut Log, place: &Place<'_>, whole: &str) {
+/// `name` is what machine files call it, where they have a word for it.
+pub(crate) fn core(
+    found: &mut Found,
+    log: &mut Log,
+    place: &Place<'_>,
+    whole: &str,
+    name: Option<&'static str>,
+) {
     found.core = true;
-    found.remarks.push(format!(
+    found.kinematics = name;
+    let energy = format!(
         "{}: two motors move two axes together. Their energy is that of the axes if each of the two \
          has the rotors of both motors. What each motor draws differs from what each axis draws: with \
          the larger mass for both axes straight moves from rest draw the same; at corners and on arcs \
-         a motor may drive while the other brakes. With speed, acceleration, mass and friction alike \
-         in both axes, --certificate robust covers what the motors draw; else keep a margin.",
+         a motor may drive while the other brakes.",
         place.source(whole)
+    );
+    if name.is_some() {
+        found.remarks.push(format!(
+            "{energy} The robust bound covers that where speed, acceleration, mass and friction are \
+             alike in both axes, and is taken."
+        ));
+        log.warning(
+            place,
+            "two motors move two axes together: they count by the robust bound".to_owned(),
+            "give both axes the larger mass and friction, and the rotors of both motors",
+        );
+        return;
+    }
+    found.remarks.push(format!(
+        "{energy} With speed, acceleration, mass and friction alike in both axes, --certificate robust \
+         covers what the motors draw; else keep a margin."
     ));
     log.warning(
         place,

@@ -109,8 +109,11 @@ fn kinematics_of(config: &Config<'_, '_>, found: &mut Found, log: &mut Log) {
     match item.value {
         "cartesian" => {}
         "generic_cartesian" => carriages::kinematics_of(config, found, log),
-        "corexy" | "corexz" | "hybrid_corexy" | "hybrid_corexz" => {
-            kinematics::core(found, log, &item.place, item.whole);
+        name @ ("corexy" | "corexz" | "hybrid_corexy" | "hybrid_corexz") => {
+            let name = ["corexy", "corexz"]
+                .into_iter()
+                .find(|known| *known == name);
+            kinematics::core(found, log, &item.place, item.whole, name);
         }
         other => kinematics::refuse(log, &item.place, other),
     }

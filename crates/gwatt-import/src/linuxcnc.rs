@@ -181,7 +181,7 @@ fn kinematics_of(config: &Config<'_>, found: &mut Found, log: &mut Log) {
 fn by_name(name: &str, whole: &str, place: &Place<'_>, found: &mut Found, log: &mut Log) {
     match name {
         "trivkins" | "gantrykins" | "" => {}
-        "corexykins" => kinematics::core(found, log, place, whole),
+        "corexykins" => kinematics::core(found, log, place, whole, Some("corexy")),
         other => kinematics::refuse(log, place, other),
     }
 }

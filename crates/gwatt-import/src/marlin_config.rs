@@ -42,18 +42,18 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
             text.clone_into(&mut found.name);
         }
     }
-    for name in [
-        "COREXY",
-        "COREXZ",
-        "COREYZ",
-        "COREYX",
-        "COREZX",
-        "COREZY",
-        "MARKFORGED_XY",
-        "MARKFORGED_YX",
+    for (name, known) in [
+        ("COREXY", Some("corexy")),
+        ("COREXZ", Some("corexz")),
+        ("COREYZ", None),
+        ("COREYX", Some("corexy")),
+        ("COREZX", Some("corexz")),
+        ("COREZY", None),
+        ("MARKFORGED_XY", None),
+        ("MARKFORGED_YX", None),
     ] {
         if let Some(define) = defines.all(name).next() {
-            kinematics::core(&mut found, log, &define.place, define.whole);
+            kinematics::core(&mut found, log, &define.place, define.whole, known);
         }
     }
     for name in OTHERS {

@@ -301,8 +301,13 @@ fn kinematics_of(found: &mut Found, log: &mut Log, command: &Command<'_>) {
     };
     match (command.code.as_str(), word.letter, word.text) {
         ("M669", 'K', "0") | ("M667", 'S', "0") | ("M669", 'S', _) => {}
-        ("M669", 'K', "1" | "2" | "5" | "8") | ("M667", 'S', "1" | "2") => {
-            kinematics::core(found, log, &command.place, command.whole);
+        ("M669", 'K', kind @ ("1" | "2" | "5" | "8")) | ("M667", 'S', kind @ ("1" | "2")) => {
+            let name = match kind {
+                "1" => Some("corexy"),
+                "2" => Some("corexz"),
+                _ => None,
+            };
+            kinematics::core(found, log, &command.place, command.whole, name);
         }
         _ => kinematics::refuse(log, &command.place, command.whole),
     }

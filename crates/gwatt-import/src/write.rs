@@ -83,6 +83,9 @@ fn head(out: &mut String, found: &Found, files: &[String]) {
     }
     let _ = writeln!(out, "schema = 1\nname = {}", quoted(&name));
     let _ = writeln!(out, "controller = \"{}\"", found.controller);
+    if let Some(kinematics) = found.kinematics {
+        let _ = writeln!(out, "kinematics = \"{kinematics}\"");
+    }
 }
 
 fn converter(out: &mut String, found: &Found) {
@@ -184,8 +187,13 @@ fn field(out: &mut String, key: &str, figure: Option<&Figure>) -> bool {
 /// What the file cannot know.
 fn drive(out: &mut String, id: AxisId, axis: &FoundAxis, found: &Found) {
     let build = found.build;
-    let rotor = if found.core && matches!(id, AxisId::X | AxisId::Y) {
-        "rotors of both motors, for X as for Y".to_owned()
+    let shared = match found.kinematics {
+        Some("corexz") => [AxisId::X, AxisId::Z],
+        _ => [AxisId::X, AxisId::Y],
+    };
+    let rotor = if found.core && shared.contains(&id) {
+        let [first, second] = shared.map(|id| char::from(id.letter()));
+        format!("rotors of both motors, for {first} as for {second}")
     } else if axis.motors > 1 {
         format!("rotors of all {} motors together", axis.motors)
     } else {

@@ -4,14 +4,21 @@
 use super::control::{Control, Run};
 use super::report::Report;
 use crate::rules::Macros;
+use gwatt_machine::CornerRule;
+use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_motion::ActionKind;
 use gwatt_syntax::{Block, Issue, IssueKind, MAX_ISSUES};
 
 /// Commands that show something or unlock, and move nothing.
 const IDLE: [&str; 6] = ["$X", "$$", "$#", "$G", "$I", "$N"];
 /// Settings that change no move: pulses, reports, limit switches, homing, the
-/// scale of the spindle.
-const IDLE_SETTINGS: [u32; 16] = [0, 1, 4, 5, 6, 10, 13, 20, 21, 22, 24, 25, 26, 27, 30, 31];
+/// scale of the spindle, travel.
+const IDLE_SETTINGS: [u32; 22] = [
+    0, 1, 4, 5, 6, 10, 13, 20, 21, 22, 24, 25, 26, 27, 30, 31, 130, 131, 132, 133, 134, 135,
+];
+
+/// Relative difference of figures that are the same in other units.
+const ROUNDING: f64 = 1e-9;
 
 /// What a byte asks of grbl at once; `?` only asks for its state.
 fn realtime(byte: u8) -> Option<&'static str> {
@@ -88,8 +95,13 @@ impl Control<'_> {
         let whole = run.whole();
         let setting = command.strip_prefix('$').and_then(|it| it.split_once('='));
         let number = setting.and_then(|(number, _)| number.trim().parse().ok());
+        let value = setting.and_then(|(_, value)| value.trim().parse::<f64>().ok());
         match number {
             Some(number) if IDLE_SETTINGS.contains(&number) => {}
+            Some(number) if value.is_some_and(|value| self.is_covered(number, value)) => {
+                let message = "settings count as the machine file has them: it has no less";
+                run.report.note_once("setting", message, whole);
+            }
             Some(number) => {
                 let message =
                     format!("${number} is a setting that may change how the machine moves");
@@ -105,6 +117,33 @@ impl Control<'_> {
                     .help("send it apart from the program");
             }
         }
+    }
+
+    /// Whether what a setting permits is no more than what the machine file does: grbl may take
+    /// it or, while it moves, refuse it.
+    fn is_covered(&self, number: u32, value: f64) -> bool {
+        let axis = |first: u32| {
+            let index = usize::try_from(number - first).ok()?;
+            self.machine.axes.get(index)?.as_ref()
+        };
+        let most = match number {
+            // No laser mode.
+            32 => Some(0.0),
+            11 => match self
+                .machine
+                .controller
+                .planner
+                .look_ahead
+                .map(|it| it.corner)
+            {
+                Some(CornerRule::JunctionDeviation { deviation_mm, .. }) => Some(deviation_mm),
+                _ => None,
+            },
+            110..=115 => axis(110).map(|data| data.rapid_mm_s * SECONDS_PER_MINUTE),
+            120..=125 => axis(120).map(|data| data.accel_mm_s2),
+            _ => None,
+        };
+        most.is_some_and(|most| (0.0..=most * (1.0 + ROUNDING)).contains(&value))
     }
 
     /// `$H`: from anywhere to the limit switches, at a speed of the settings. All axes

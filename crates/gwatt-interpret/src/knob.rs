@@ -178,6 +178,35 @@ impl KnobState {
         self.speed_mm_s[axis] = if own { f64::INFINITY } else { speed_mm_s };
     }
 
+    /// Takes the higher of these limits and `other`: which of both hold is not known.
+    pub(super) fn raise_to(&mut self, machine: &Machine, other: &Self) {
+        let lists = [
+            (&mut self.feed_accel_mm_s2[..], &other.feed_accel_mm_s2[..]),
+            (&mut self.rapid_accel_mm_s2, &other.rapid_accel_mm_s2),
+            (&mut self.path_accel_mm_s2, &other.path_accel_mm_s2),
+            (&mut self.jerk_factor, &other.jerk_factor),
+        ];
+        for (own, others) in lists {
+            for (own, other) in own.iter_mut().zip(others) {
+                *own = own.max(*other);
+            }
+        }
+        // Infinite: the machine's own, which a program may exceed.
+        let or = |speed_mm_s: f64, own_mm_s: f64| match speed_mm_s {
+            speed_mm_s if speed_mm_s.is_finite() => speed_mm_s,
+            _ => own_mm_s,
+        };
+        let own = own_path_speed(machine).unwrap_or(f64::INFINITY);
+        let most = or(self.path_speed_mm_s, own).max(or(other.path_speed_mm_s, own));
+        self.limit_path_speed(machine, most);
+        for axis in 0..AXES {
+            let own = machine.axes[axis].map_or(f64::INFINITY, |data| data.rapid_mm_s);
+            let most = or(self.speed_mm_s[axis], own).max(or(other.speed_mm_s[axis], own));
+            self.limit_axis_speed(machine, axis, most);
+        }
+        self.rapid_factor = self.rapid_factor.max(other.rapid_factor);
+    }
+
     /// Whether a speed is limited otherwise than by the machine.
     pub(super) fn limits_speed(&self) -> bool {
         self.path_speed_mm_s.is_finite() || self.speed_mm_s.iter().any(|cap| cap.is_finite())

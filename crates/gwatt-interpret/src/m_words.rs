@@ -101,7 +101,7 @@ impl Control<'_> {
                 continue;
             }
             if matches!(number, 820 | 830) && self.rules.extruder_modes {
-                self.extruder_mode(Some(number == 820));
+                self.extruder_stated(number == 820);
                 continue;
             }
             if self.subprogram_word(number, span, run) {

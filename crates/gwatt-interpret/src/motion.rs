@@ -137,6 +137,9 @@ impl Control<'_> {
         machine_coordinates: bool,
         end: &mut AxisValues,
     ) -> Option<AxisSet> {
+        if self.has_unstated() && self.refuses_unstated(run) {
+            return None;
+        }
         if self.is_bent(run) {
             return self.bent_targets(run, machine_coordinates, end);
         }

@@ -109,6 +109,13 @@ impl Offsets {
             }
             offsets.given |= 1 << system;
         }
+        for (first, places) in REFERENCE.into_iter().zip(&machine.points) {
+            for (axis, place) in places.iter().enumerate() {
+                if let Some(place_mm) = place {
+                    offsets.store_axis(first, axis, *place_mm);
+                }
+            }
+        }
         for (number, value) in parameters.into_iter().flat_map(ParameterFile::iter) {
             offsets.set_stored(number, value);
         }

@@ -97,7 +97,7 @@ impl Control<'_> {
                 GCode::Retract(initial) => self.retract_level(initial, span, run),
                 GCode::Absolute(absolute) => {
                     self.modal.absolute = absolute;
-                    self.extruder_mode(None);
+                    self.distance_stated();
                 }
                 GCode::ArcAbsolute(absolute) => self.modal.arc_absolute = absolute,
                 GCode::MachineCoordinates => run.facts.machine_coordinates = true,

@@ -1,6 +1,6 @@
 //! Rapids that are written as feeds between two stops, and how they run there.
 
-use super::case::Case;
+use super::case::{Case, Ends};
 use super::change::Change;
 use super::lever::Obstacle;
 use super::solver::Solver;
@@ -60,6 +60,17 @@ impl Solver<'_> {
         })
     }
 
+    /// Whether a rapid that stood at both ends by itself becomes a feed of which nobody says
+    /// that it does, on a control that blends rapids like feeds.
+    fn stood(&self, case: Case<'_>, changed: &Move) -> bool {
+        self.machine.controller.planner.rapid_joint == RapidJoint::All
+            && case.ends == Ends::Rest
+            && !case.assessment.ahead
+            && case.mv.kind == MoveKind::Rapid
+            && changed.kind != MoveKind::Rapid
+            && changed.path_mode == PathMode::LookAhead
+    }
+
     /// Solves a case. Where a word in the block stops it at its end, that is taken: nothing
     /// is lost by it. Where the feed that stands for a rapid has half of its acceleration
     /// between dwells, exact stop is tried as well: it leaves the whole, so that the feed
@@ -71,6 +82,18 @@ impl Solver<'_> {
     ) -> Result<Change, Obstacle> {
         let between_dwells = solve(case)?;
         let changed = self.changed(case, &between_dwells);
+        if self.stood(case, &changed) {
+            if case.permit.stop_word {
+                return Ok(Change {
+                    exact_stop: true,
+                    ..between_dwells
+                });
+            }
+            return solve(Case {
+                ends: Ends::Any(2),
+                ..case
+            });
+        }
         if !case.permit.exact_stop || !self.gets_stops(case.mv, &changed) {
             return Ok(between_dwells);
         }

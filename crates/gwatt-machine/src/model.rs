@@ -17,6 +17,8 @@ pub struct Machine {
     pub axis_set: AxisSet,
     /// At least one; several where groups of axes have converters of their own.
     pub converters: Vec<Converter>,
+    /// Which motors move which axes.
+    pub kinematics: Kinematics,
     /// How the path is followed; from `[path]`, else from the controller.
     pub path: Path,
     /// Force or torque over speed of the axes for which it is given.
@@ -35,6 +37,9 @@ pub struct Machine {
     /// Work offsets that the control keeps, by the number of the system (G54 is 1, G59.3 is
     /// 9); `None` where none are given. Machine coordinates of its zero.
     pub offsets: [Option<AxisValues>; 9],
+    /// Where G28 and G30 lead, by axis, in machine coordinates, on controls that keep these
+    /// points among their parameters; `None` where it is not given.
+    pub points: [[Option<f64>; AXES]; 2],
     /// Limits for combinations of axes.
     pub presets: Vec<Preset>,
     /// Margin, overrides and floors.
@@ -288,6 +293,27 @@ pub struct MassPart {
     pub inertia_kg_m2: Option<f64>,
     /// How many of them there are.
     pub count: f64,
+}
+
+/// Which motors move which axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Kinematics {
+    /// Each axis has its own.
+    #[default]
+    Cartesian,
+    /// Two motors move X and Y together.
+    CoreXy,
+    /// Two motors move X and Z together.
+    CoreXz,
+}
+
+impl Kinematics {
+    /// Whether motors move two axes together, so that one may drive while the other brakes: the
+    /// robust bound of the axes alone covers what they draw.
+    #[must_use]
+    pub fn shares_motors(self) -> bool {
+        self != Self::Cartesian
+    }
 }
 
 /// A point of an axis' force curve, load side.

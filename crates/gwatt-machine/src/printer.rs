@@ -45,6 +45,10 @@ pub struct Printer {
     pub unknown_moves: Vec<Command>,
     /// Those of them that may switch heaters and fans: macros and files of the machine.
     pub may_heat: Vec<Command>,
+    /// Macros of the machine, of which nothing is known.
+    pub unknown_macros: Vec<Command>,
+    /// Words before and after a part that the machine may leave out.
+    pub optional_part: Vec<Command>,
     /// Commands that shift the coordinates.
     pub shifts: Vec<Command>,
 }
@@ -141,6 +145,8 @@ impl Default for Printer {
             ignored_macros: Vec::new(),
             unknown_moves: Vec::new(),
             may_heat: Vec::new(),
+            unknown_macros: Vec::new(),
+            optional_part: Vec::new(),
             shifts: Vec::new(),
         }
     }

@@ -24,6 +24,15 @@ impl Square {
             cruise_ratio: rules.min_cruise_ratio,
         })
     }
+
+    /// What bounds both: the higher speed at corners, the lower share of hills to cruise.
+    #[must_use]
+    pub fn or_faster(self, other: Self) -> Self {
+        Self {
+            corner_mm_s: self.corner_mm_s.max(other.corner_mm_s),
+            cruise_ratio: self.cruise_ratio.min(other.cruise_ratio),
+        }
+    }
 }
 
 /// X and Y, which Klipper's limits along the path are those of.

@@ -65,6 +65,11 @@ impl<'m> Assessor<'m> {
     pub fn new(machine: &'m Machine, requested: Option<Certificate>, want: Want) -> Self {
         let [largest, nominal] = Overrides::of(machine);
         let model = PowerModel::new(machine);
+        let requested = if machine.kinematics.shares_motors() {
+            Some(Certificate::Robust)
+        } else {
+            requested
+        };
         let rules = machine.controller.planner.look_ahead;
         let rules = rules.filter(|_| requested != Some(Certificate::Robust));
         let ahead = rules

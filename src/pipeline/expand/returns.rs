@@ -100,10 +100,13 @@ fn not_known(point: u16, machine: &Machine) -> &'static str {
             "where it leads is not known: give reference_mm of the axes in the machine file"
         }
         (false, true) => {
-            "where it leads is not known: give the control's --parameters, or reference_mm of the \
-             axes in the machine file"
+            "where it leads is not known: give the control's --parameters, or G28 under [offsets] in \
+             the machine file"
         }
-        (true, true) => "where it leads is not known: give the control's --parameters",
+        (true, true) => {
+            "where it leads is not known: give the control's --parameters, or G30 under [offsets] in \
+             the machine file"
+        }
         (true, false) => {
             "where it leads is not known: give further_reference_mm of the axes in the machine \
              file"

@@ -8,6 +8,7 @@ mod bars;
 mod block;
 mod cell;
 mod columns;
+mod columns_drawn;
 mod data;
 mod door;
 mod figures;

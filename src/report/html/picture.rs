@@ -6,8 +6,9 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
+use super::columns_drawn::{self, Peaks};
 use super::data::{channel_places, channels};
-use super::shares::PageSeries;
+use super::shares::Span;
 use super::shown::Page;
 use crate::power::PowerModel;
 use crate::report::chart::{Frame, Scale, grid};
@@ -24,9 +25,6 @@ const COLOURS: [&str; 13] = [
     "#4269d0", "#e3891b", "#3a9d5d", "#c4457a", "#7a5ac2", "#1c9aa8", "#a0673a", "#6b8e23",
     "#b8860b", "#2f7f6f", "#8f6bb8", "#d65f4d", "#9a9a9a",
 ];
-
-/// Peaks over time of one panel: from, to, drawn, fed back.
-type Peaks = Vec<[f64; 4]>;
 
 /// Writes the picture.
 pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
@@ -54,15 +52,12 @@ pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
     let all = || panels.iter().flat_map(|panel| &panel.1);
     let most_s = all().map(|it| it[1]).filter(|it| it.is_finite());
     let most_s = most_s.fold(0.0, f64::max).max(1e-9);
+    for (_, peaks, _) in &mut panels {
+        *peaks = columns_drawn::peaks(std::mem::take(peaks), most_s);
+    }
+    let all = || panels.iter().flat_map(|panel| &panel.1);
     let limits = limits_w(page);
-    let lines = limits.iter().copied().filter(|it| it.is_finite());
-    let powers = all()
-        .flat_map(|it| [it[2], -it[3]])
-        .filter(|it| it.is_finite());
-    let powers = powers.chain(lines).chain([0.0, 1.0]);
-    let (least_w, most_w) = powers.fold((0.0, 0.0), |(least, most): (f64, f64), it| {
-        (least.min(it), most.max(it))
-    });
+    let (least_w, most_w) = extent(all().copied(), &limits);
     let room = 0.06 * (most_w - least_w);
     let height = TOP + (PANEL + GAP) * panels.len() as f64;
     writeln!(
@@ -89,7 +84,8 @@ pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
         };
         let mut text = grid(&heading(name, &peaks), &frame, &time, &value);
         if let Some(series) = series {
-            areas(&mut text, page, series, &time, &value);
+            let spans = columns_drawn::spans(&series.spans, most_s);
+            areas(&mut text, page, &spans, &time, &value);
         }
         outline(&mut text, &peaks, &time, &value);
         for limit_w in limits.iter().filter(|it| it.is_finite()) {
@@ -98,7 +94,8 @@ pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
             let _ = writeln!(
                 text,
                 "<path d=\"M{LEFT} {y:.2}H{right}\" stroke=\"#b00020\" stroke-dasharray=\"6 4\"/>\
-                 <text x=\"{}\" y=\"{:.2}\" text-anchor=\"end\" fill=\"#b00020\">{}</text>",
+                 <text x=\"{}\" y=\"{:.2}\" text-anchor=\"end\" fill=\"#b00020\" \
+                 stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\">{}</text>",
                 right - 4.0,
                 y - 4.0,
                 power(*limit_w)
@@ -107,6 +104,16 @@ pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
         out.write_all(text.as_bytes())?;
     }
     writeln!(out, "</svg>")
+}
+
+/// From the least to the largest power of these peaks and lines, and no less than a watt.
+fn extent(peaks: impl Iterator<Item = [f64; 4]>, limits_w: &[f64]) -> (f64, f64) {
+    let powers = peaks.flat_map(|it| [it[2], -it[3]]);
+    let powers = powers.chain(limits_w.iter().copied()).chain([0.0, 1.0]);
+    let powers = powers.filter(|it| it.is_finite());
+    powers.fold((0.0, 0.0), |(least, most): (f64, f64), it| {
+        (least.min(it), most.max(it))
+    })
 }
 
 /// The limits of all converters, W: drawn up, fed back down.
@@ -170,15 +177,15 @@ fn colour(page: &Page<'_>, index: usize) -> &'static str {
 }
 
 /// The planned power by axis and spindle: what is drawn upwards, what is fed back down.
-fn areas(text: &mut String, page: &Page<'_>, series: &PageSeries, time: &Scale, value: &Scale) {
-    let count = series.spans.len();
+fn areas(text: &mut String, page: &Page<'_>, spans: &[Span], time: &Scale, value: &Scale) {
+    let count = spans.len();
     let (mut up, mut down) = (vec![0.0; count], vec![0.0; count]);
     for (index, place) in channel_places(page).into_iter().enumerate() {
         let colour = colour(page, index);
-        let drawn = |it: &super::shares::Span| it.drawn.values_w[place].max(0.0);
-        let back = |it: &super::shares::Span| -(-it.back.values_w[place]).max(0.0);
-        area(text, colour, series, &mut up, drawn, (time, value));
-        area(text, colour, series, &mut down, back, (time, value));
+        let drawn = |it: &Span| it.drawn.values_w[place].max(0.0);
+        let back = |it: &Span| -(-it.back.values_w[place]).max(0.0);
+        area(text, colour, spans, &mut up, drawn, (time, value));
+        area(text, colour, spans, &mut down, back, (time, value));
     }
 }
 
@@ -186,15 +193,15 @@ fn areas(text: &mut String, page: &Page<'_>, series: &PageSeries, time: &Scale, 
 fn area(
     text: &mut String,
     colour: &str,
-    series: &PageSeries,
+    spans: &[Span],
     edge: &mut [f64],
-    own: impl Fn(&super::shares::Span) -> f64,
+    own: impl Fn(&Span) -> f64,
     (time, value): (&Scale, &Scale),
 ) {
     let mut ahead = String::new();
     let mut way_back: Vec<String> = Vec::new();
     let mut any = false;
-    for (span, edge) in series.spans.iter().zip(edge) {
+    for (span, edge) in spans.iter().zip(edge) {
         let inner = *edge;
         *edge += own(span);
         any |= inner != *edge;

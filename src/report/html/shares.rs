@@ -189,7 +189,7 @@ impl Moment {
 
 impl Span {
     /// Takes the next one in.
-    fn join(&mut self, next: &Self) {
+    pub(super) fn join(&mut self, next: &Self) {
         self.to_s = next.to_s;
         if next.drawn.values_w[0] > self.drawn.values_w[0] {
             self.drawn = next.drawn;

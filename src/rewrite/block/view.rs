@@ -47,6 +47,8 @@ pub enum FeedAround {
     LeftAfter,
     /// What is in force before it may be another block's: the original's is written.
     NotKnownBefore,
+    /// Both: it states its own F, and what it leaves is put right by those that count on it.
+    Stated,
     /// It is under compensation, where all stands in the blocks themselves.
     Within {
         /// Before it the original's words are in force; else it states them.

@@ -75,7 +75,13 @@ pub(super) fn kinematics_of(config: &Config<'_, '_>, found: &mut Found, log: &mu
     match (coupled.as_slice(), sums.as_slice()) {
         ([], _) => {}
         ([first, _], [a, b]) if core(a, b) || core(b, a) => {
-            kinematics::core(found, log, &first.place, first.whole);
+            let letters: String = a.chars().filter(char::is_ascii_alphabetic).collect();
+            let name = match letters.as_str() {
+                "xy" | "yx" => Some("corexy"),
+                "xz" | "zx" => Some("corexz"),
+                _ => None,
+            };
+            kinematics::core(found, log, &first.place, first.whole, name);
         }
         ([first, ..], _) => kinematics::refuse(log, &first.place, first.whole),
     }

@@ -5,6 +5,9 @@ use crate::ini::Item;
 use crate::near::Job;
 use crate::text::{Log, Place};
 
+/// Characters of a line of names.
+const LINE_MAX: usize = 90;
+
 /// Limits that are set before any program runs.
 #[derive(Default)]
 pub(super) struct AtStart {
@@ -68,25 +71,71 @@ pub(super) fn named(items: &[Item<'_>], found: &mut Found) {
         for item in items {
             if let Some(name) = item.section.strip_prefix(kind) {
                 let name = name.trim().to_ascii_uppercase();
-                if !names.contains(&name) {
+                if usable(&name) && !names.contains(&name) {
                     names.push(name);
                 }
             }
         }
-        names.join(", ")
+        names
     };
-    let macros = list("gcode_macro ");
+    let (words, macros): (Vec<_>, Vec<_>) = list("gcode_macro ")
+        .into_iter()
+        .partition(|name| is_word(name));
     if !macros.is_empty() {
+        found.language(array("unknown_macros", &macros), "[gcode_macro]");
+        found.remarks.push(
+            "What macros do: a program may call them, and they count as anything. A file NAME.gcode \
+             with the commands that one comes to, in the program's folder or one given by --sub-path, \
+             says it; what moves nothing and sets nothing goes into `ignored_macros`, what leaves feed \
+             and modes as they are into `unknown_moves`"
+                .to_owned(),
+        );
+    }
+    if !words.is_empty() {
         found.remarks.push(format!(
-            "Macros ({macros}): what a program calls of them is written into a file of its name, or \
-             listed under `ignored_macros` or `unknown_moves` in [language]"
+            "Macros in place of words ({}): these count as the firmware's own",
+            words.join(", ")
         ));
     }
-    let delayed = list("delayed_gcode ");
+    let delayed = list("delayed_gcode ").join(", ");
     if !delayed.is_empty() {
         found.remarks.push(format!(
             "Commands that run by themselves ([delayed_gcode] {delayed}): limits of speed and \
              acceleration in them count, macros and moves in them do not"
         ));
     }
+}
+
+/// Whether it is a name by which a program can call a macro.
+fn usable(name: &str) -> bool {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
+    !name.is_empty() && name.len() <= 60 && name.bytes().all(plain)
+}
+
+/// Whether it is written as a word: `G28`, `M109`, `T0`.
+fn is_word(name: &str) -> bool {
+    let digits = name.strip_prefix(['G', 'M', 'T']).unwrap_or("");
+    digits.starts_with(|first: char| first.is_ascii_digit())
+}
+
+/// An array of names, on lines of its own where it is long.
+fn array(field: &str, names: &[String]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+    let line = format!("{field} = [{}]", quoted.join(", "));
+    if line.len() <= LINE_MAX {
+        return line;
+    }
+    let mut out = format!("{field} = [\n   ");
+    let mut width = 3;
+    for name in quoted {
+        if width + name.len() + 2 > LINE_MAX {
+            out.push_str("\n   ");
+            width = 3;
+        }
+        width += name.len() + 2;
+        out.push(' ');
+        out.push_str(&name);
+        out.push(',');
+    }
+    out + "\n]"
 }

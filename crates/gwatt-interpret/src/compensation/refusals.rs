@@ -11,6 +11,9 @@ use crate::control::{Control, Run};
 use crate::rules::ToolLengths;
 use gwatt_syntax::source::Span;
 
+/// G70 of `LinuxCNC` (number × 10).
+const FINISHING: u16 = 700;
+
 impl Control<'_> {
     /// Words that come before the compensation in the order of execution.
     pub(super) fn refuse_before(&self, run: &mut Run<'_, '_>) {
@@ -60,7 +63,11 @@ impl Control<'_> {
     /// Words that come after it.
     pub(super) fn refuse_behind(&self, run: &mut Run<'_, '_>) {
         for index in 0..run.words.g.len() {
-            let (_, number, span) = run.words.g[index];
+            let (code, number, span) = run.words.g[index];
+            // The finishing pass runs along its contour as any other path.
+            if code == GCode::LatheCycle(FINISHING) {
+                continue;
+            }
             if number == 100 && self.rules.strict_compensation && !sets_offsets(run) {
                 continue;
             }

@@ -1,101 +1,112 @@
-//! Functions of one value.
+//! Functions of one to three values. Which names they have, each language says for itself; angles
+//! are in degrees.
+
+use super::operator::{finite, power};
 
 /// Where the integers of LinuxCNC end.
 const ROUND_MAX: f64 = 2_147_483_647.0;
 
-/// A function by its name.
+/// A function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Function {
     Abs,
     Acos,
+    Acot,
+    /// Of y and x.
+    Angle,
     Asin,
     Atan,
+    /// Two bounds, then the value.
+    Bound,
+    Ceil,
     Cos,
+    Cot,
+    /// Whether a parameter has a value: it takes a name.
     Exists,
     Exp,
-    Fix,
-    Fup,
+    Floor,
+    Fract,
     Ln,
+    /// Ln and the logarithm to the base of 10 on the ISG kernel.
+    Log,
+    Log10,
+    Max,
+    Min,
+    Modulo,
+    /// Away from zero.
+    Outward,
     Power,
+    PowerOfTen,
     Round,
+    /// By way of an integer, beyond which LinuxCNC gives nonsense.
+    RoundInteger,
+    /// Halves go up, of negative numbers too.
+    RoundUp,
     Sin,
     Sqrt,
+    Square,
     Tan,
+    Trunc,
+    /// SINUMERIK, "Precision correction on comparison errors (TRUNC)".
+    TruncCorrected,
 }
-
-/// Which language has a name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Of {
-    Both,
-    Rs274,
-    /// Fanuc custom macro B.
-    Macro,
-}
-
-/// A name that another begins with stands after it.
-const NAMES: [(&[u8], Function, Of); 20] = [
-    (b"ABS", Function::Abs, Of::Both),
-    (b"ACOS", Function::Acos, Of::Both),
-    (b"ACS", Function::Acos, Of::Macro),
-    (b"ASIN", Function::Asin, Of::Both),
-    (b"ASN", Function::Asin, Of::Macro),
-    (b"ATAN", Function::Atan, Of::Both),
-    (b"ATN", Function::Atan, Of::Macro),
-    (b"COS", Function::Cos, Of::Both),
-    (b"EXISTS", Function::Exists, Of::Rs274),
-    (b"EXP", Function::Exp, Of::Both),
-    (b"FIX", Function::Fix, Of::Both),
-    (b"FUP", Function::Fup, Of::Both),
-    (b"LN", Function::Ln, Of::Both),
-    (b"POW", Function::Power, Of::Macro),
-    (b"ROUND", Function::Round, Of::Both),
-    (b"SIN", Function::Sin, Of::Both),
-    (b"SQRT", Function::Sqrt, Of::Both),
-    (b"SQR", Function::Sqrt, Of::Macro),
-    (b"TAN", Function::Tan, Of::Both),
-    (b"RND", Function::Round, Of::Macro),
-];
 
 impl Function {
-    /// The function whose name `text` begins with, and the name's length.
-    /// `text` has no blanks.
-    pub(super) fn read(text: &[u8], fanuc: bool) -> Option<(Self, usize)> {
-        let other = if fanuc { Of::Rs274 } else { Of::Macro };
-        NAMES
-            .iter()
-            .filter(|(_, _, of)| *of != other)
-            .find(|(name, _, _)| text.starts_with(name))
-            .map(|(name, function, _)| (*function, name.len()))
+    /// How many values it takes.
+    pub(crate) fn values(self) -> usize {
+        match self {
+            Self::Bound => 3,
+            Self::Angle | Self::Max | Self::Min | Self::Modulo | Self::Power => 2,
+            _ => 1,
+        }
     }
 
-    /// The value for `x`, or what is wrong. Angles in degrees.
-    pub(super) fn apply(self, x: f64, fanuc: bool) -> Result<f64, &'static str> {
-        Ok(match self {
+    /// What it comes to, or what is wrong.
+    pub(crate) fn apply(self, [x, y, z]: [f64; 3]) -> Result<f64, &'static str> {
+        finite(match self {
             Self::Abs => x.abs(),
             Self::Acos if x.abs() > 1.0 => return Err("ACOS of a number beyond -1 and 1"),
             Self::Acos => libm::acos(x).to_degrees(),
+            // Which half the control takes for negative numbers is not documented.
+            Self::Acot if x <= 0.0 => return Err("ACOT of a number that is not positive"),
+            Self::Acot => libm::atan(1.0 / x).to_degrees(),
+            Self::Angle => libm::atan2(x, y).to_degrees(),
             Self::Asin if x.abs() > 1.0 => return Err("ASIN of a number beyond -1 and 1"),
             Self::Asin => libm::asin(x).to_degrees(),
             Self::Atan => libm::atan(x).to_degrees(),
+            Self::Bound => z.clamp(x.min(y), x.max(y)),
+            Self::Outward if x < 0.0 => x.floor(),
+            Self::Ceil | Self::Outward => x.ceil(),
             Self::Cos => libm::cos(x.to_radians()),
+            Self::Cot => 1.0 / libm::tan(x.to_radians()),
+            Self::Exists => return Err("a function of another form"),
             Self::Exp => libm::exp(x),
-            // RS274/NGC: down and up; Fanuc: to zero and away from it.
-            Self::Fix if fanuc => x.trunc(),
-            Self::Fix => x.floor(),
-            Self::Fup if fanuc && x < 0.0 => x.floor(),
-            Self::Fup => x.ceil(),
+            Self::Floor => x.floor(),
+            Self::Fract => x.fract(),
             Self::Ln if x <= 0.0 => return Err("LN of a number that is not positive"),
-            Self::Ln => libm::log(x),
-            // LinuxCNC rounds by way of an integer, beyond which it gives nonsense.
-            Self::Round if !fanuc && x.abs() >= ROUND_MAX => {
+            Self::Log | Self::Log10 if x <= 0.0 => {
+                return Err("the logarithm of a number that is not positive");
+            }
+            Self::Ln | Self::Log => libm::log(x),
+            Self::Log10 => libm::log10(x),
+            Self::Max => x.max(y),
+            Self::Min => x.min(y),
+            Self::Modulo if y == 0.0 => return Err("a division by zero"),
+            Self::Modulo => libm::fmod(x, y),
+            Self::Power => power(x, y)?,
+            Self::PowerOfTen => libm::pow(10.0, x),
+            Self::RoundInteger if x.abs() >= ROUND_MAX => {
                 return Err("ROUND of a number beyond 2147483647");
             }
-            Self::Round => x.round(),
+            Self::Round | Self::RoundInteger => x.round(),
+            Self::RoundUp => (x + 0.5).floor(),
             Self::Sin => libm::sin(x.to_radians()),
             Self::Sqrt if x < 0.0 => return Err("SQRT of a negative number"),
             Self::Sqrt => x.sqrt(),
+            Self::Square => x * x,
             Self::Tan => libm::tan(x.to_radians()),
-            Self::Exists | Self::Power => return Err("a function of another form"),
+            Self::Trunc => x.trunc(),
+            Self::TruncCorrected => (x * (1.0 + 1e-12)).trunc(),
         })
     }
 }

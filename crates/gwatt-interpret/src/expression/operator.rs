@@ -1,90 +1,136 @@
-//! How operators are written in RS274/NGC and in Fanuc's macros, and what is
-//! their own there.
+//! Operators, and what they come to. How they are written and how tight they bind, each language
+//! says for itself (`terms.rs`).
 
-use super::value::Value;
-use crate::operator::{Operator, Rules};
-
-/// `LinuxCNC` compares with a tolerance with EQ and NE, and exactly with the others.
-const RS274: Rules = Rules {
-    tolerance: 1e-4,
-    holds: |value| value != 0.0,
-    rest: |a, b| {
-        let rest = libm::fmod(a, b);
-        if rest < 0.0 { rest + b.abs() } else { rest }
-    },
-    bits: |_| Err("a logical operation on bits"),
-};
-
-/// Between conditions, as in IF [[#1 EQ 1] AND [#2 EQ 2]], the bits of 0 and 1 are
-/// what is wanted too.
-const MACRO: Rules = Rules {
-    tolerance: 0.0,
-    holds: |value| value != 0.0,
-    rest: libm::fmod,
-    bits: |value| {
-        const MOST: f64 = 4_294_967_295.0;
-        if value.abs() > MOST {
-            return Err("a logical operation on a number of more than 32 bits");
-        }
-        Ok(value.round() as i64)
-    },
-};
-
-/// The operator that `text`, upper case without blanks, begins with, and its
-/// length.
-pub(super) fn read(text: &[u8], fanuc: bool) -> Option<(Operator, usize)> {
-    use Operator::{
-        And, BitAnd, BitExclusiveOr, BitOr, Divide, Equal, ExclusiveOr, Greater, GreaterEqual,
-        Less, LessEqual, Minus, Modulo, NotEqual, Or, Plus, Power, Times,
-    };
-    let at = |at: usize| text.get(at).copied().unwrap_or_default();
-    Some(match [at(0), at(1), at(2)] {
-        [b'*', b'*', _] => (Power, 2),
-        [b'*', ..] => (Times, 1),
-        [b'/', ..] => (Divide, 1),
-        [b'+', ..] => (Plus, 1),
-        [b'-', ..] => (Minus, 1),
-        [b'M', b'O', b'D'] => (Modulo, 3),
-        [b'A', b'N', b'D'] => (if fanuc { BitAnd } else { And }, 3),
-        [b'X', b'O', b'R'] => (if fanuc { BitExclusiveOr } else { ExclusiveOr }, 3),
-        [b'O', b'R', _] => (if fanuc { BitOr } else { Or }, 2),
-        [b'E', b'Q', _] => (Equal, 2),
-        [b'N', b'E', _] => (NotEqual, 2),
-        [b'G', b'T', _] => (Greater, 2),
-        [b'G', b'E', _] => (GreaterEqual, 2),
-        [b'L', b'T', _] => (Less, 2),
-        [b'L', b'E', _] => (LessEqual, 2),
-        _ => return None,
-    })
+/// An operator between two values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Operator {
+    Power,
+    Times,
+    Divide,
+    /// A division without its rest.
+    Whole,
+    Modulo,
+    Plus,
+    Minus,
+    Equal,
+    NotEqual,
+    Greater,
+    GreaterEqual,
+    Less,
+    LessEqual,
+    And,
+    Or,
+    ExclusiveOr,
+    /// On the bits of whole numbers.
+    BitAnd,
+    BitOr,
+    BitExclusiveOr,
+    /// Of texts.
+    Chain,
 }
 
-/// The higher binds tighter; equal ones bind from the left.
-pub(super) fn precedence(operator: Operator) -> u8 {
-    match operator {
-        Operator::Power => 5,
-        Operator::Times | Operator::Divide | Operator::Modulo | Operator::BitAnd => 4,
-        Operator::Plus | Operator::Minus | Operator::BitOr | Operator::BitExclusiveOr => 3,
-        Operator::And | Operator::Or | Operator::ExclusiveOr => 1,
-        _ => 2,
+impl Operator {
+    pub(crate) fn compares(self) -> bool {
+        matches!(
+            self,
+            Self::Equal
+                | Self::NotEqual
+                | Self::Greater
+                | Self::GreaterEqual
+                | Self::Less
+                | Self::LessEqual
+        )
+    }
+
+    /// The result, or what is wrong.
+    pub(super) fn apply(self, a: f64, b: f64, rules: &Rules) -> Result<f64, &'static str> {
+        let holds = rules.holds;
+        let bits = |join: fn(i64, i64) -> i64| -> Result<f64, &'static str> {
+            let (a, b) = ((rules.bits)(a)?, (rules.bits)(b)?);
+            Ok(join(a, b) as f64)
+        };
+        finite(match self {
+            Self::Power => power(a, b)?,
+            Self::Times => a * b,
+            Self::Divide | Self::Whole | Self::Modulo if b == 0.0 => {
+                return Err("a division by zero");
+            }
+            Self::Divide => a / b,
+            Self::Whole => (a / b).trunc(),
+            Self::Modulo => (rules.rest)(a, b),
+            Self::Plus => a + b,
+            Self::Minus => a - b,
+            Self::Equal => truth((rules.same)(a, b)),
+            Self::NotEqual => truth(!(rules.same)(a, b)),
+            Self::Greater => truth((rules.less)(b, a)),
+            Self::GreaterEqual => truth(!(rules.less)(a, b)),
+            Self::Less => truth((rules.less)(a, b)),
+            Self::LessEqual => truth(!(rules.less)(b, a)),
+            Self::And => truth(holds(a) && holds(b)),
+            Self::Or => truth(holds(a) || holds(b)),
+            Self::ExclusiveOr => truth(holds(a) != holds(b)),
+            Self::BitAnd => bits(|a, b| a & b)?,
+            Self::BitOr => bits(|a, b| a | b)?,
+            Self::BitExclusiveOr => bits(|a, b| a ^ b)?,
+            // Between texts alone.
+            Self::Chain => f64::NAN,
+        })
     }
 }
 
-/// The result, or what is wrong.
-pub(super) fn apply(
-    operator: Operator,
-    left: Value,
-    right: Value,
-    fanuc: bool,
-) -> Result<f64, &'static str> {
-    // Fanuc: null equals null only, and is 0 everywhere else.
-    if fanuc && (left.is_none() || right.is_none()) {
-        let same = f64::from(u8::from(left == right));
-        match operator {
-            Operator::Equal => return Ok(same),
-            Operator::NotEqual => return Ok(1.0 - same),
-            _ => {}
+/// An operator before a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Prefix {
+    Minus,
+    Not,
+    BitNot,
+}
+
+/// What languages say differently of the same operators.
+#[derive(Debug)]
+pub(crate) struct Rules {
+    /// Whether two values are equal.
+    pub(crate) same: fn(f64, f64) -> bool,
+    /// Whether the first value is less.
+    pub(crate) less: fn(f64, f64) -> bool,
+    /// Whether a value is true.
+    pub(crate) holds: fn(f64) -> bool,
+    /// The rest of a division by what is not 0.
+    pub(crate) rest: fn(f64, f64) -> f64,
+    /// The bits of a number, or what is wrong with it.
+    pub(crate) bits: fn(f64) -> Result<i64, &'static str>,
+}
+
+/// The largest number that logic on bits takes.
+pub(crate) const BITS_MAX: f64 = 4_294_967_295.0;
+pub(crate) const NO_BITS: &str = "a logical operation on a number of more than 32 bits";
+
+impl Prefix {
+    pub(super) fn apply(self, x: f64, rules: &Rules) -> f64 {
+        match self {
+            Self::Minus => -x,
+            Self::Not => truth(!(rules.holds)(x)),
+            Self::BitNot => !(x as i64) as f64,
         }
     }
-    let rules = if fanuc { &MACRO } else { &RS274 };
-    operator.apply(left.unwrap_or(0.0), right.unwrap_or(0.0), rules)
+}
+
+/// 1 or 0.
+pub(crate) fn truth(holds: bool) -> f64 {
+    f64::from(u8::from(holds))
+}
+
+pub(super) fn power(a: f64, b: f64) -> Result<f64, &'static str> {
+    if a < 0.0 && b.fract() != 0.0 {
+        return Err("a negative number to a power that is not whole");
+    }
+    Ok(libm::pow(a, b))
+}
+
+pub(super) fn finite(value: f64) -> Result<f64, &'static str> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err("a result beyond all numbers")
+    }
 }

@@ -1,19 +1,20 @@
-//! Reads a text from the left and works out its value on the way.
+//! Expressions of RS274/NGC and of Fanuc's macros: parameters, and values that are null or not
+//! known.
 
 use std::borrow::Cow;
+use std::ops::{Deref, DerefMut};
 
+use super::cursor::{Cursor, Lexis, exact_decimal};
+use super::engine::Grammar;
+use super::fault::{Fault, Outcome};
 use super::function::Function;
-use super::operator;
+use super::operator::{Operator, Prefix, truth};
 use super::tape::{Op, Tape, parameter_number};
+use super::terms::{Infix, Terms};
 use super::value::{
-    FROM_KEPT, Fault, Held, KEPT, PROBED, Read, Value, Variables, passed_on, remedy,
+    FROM_KEPT, Held, KEPT, Name, PROBED, Read, Value, Variables, infix, passed_on, remedy, terms_of,
 };
-use crate::operator::Operator;
 use gwatt_syntax::diagnostic::excerpt;
-use gwatt_syntax::source::Span;
-
-/// Brackets and signs inside one another.
-const DEPTH_MAX: u32 = 64;
 
 /// Stands for a value that is not known, in an expression whose value is not used.
 const STAND_IN: Value = Some(1.0);
@@ -21,21 +22,30 @@ const STAND_IN: Value = Some(1.0);
 /// Letters of the longest keyword.
 const AHEAD: usize = 9;
 
-/// Whole numbers of so many digits are exact in an `f64`.
-const EXACT_DIGITS: usize = 15;
-
-/// A place in the text of a block, which moves on as the text is understood.
+/// A cursor that keeps what it comes across.
 #[derive(Debug)]
 pub(crate) struct Reader<'t> {
-    pub(crate) text: &'t [u8],
-    pub(crate) at: usize,
+    cursor: Cursor<'t>,
     /// What is worked out on the way, where that is wanted.
     pub(crate) tape: Tape,
-    depth: u32,
     /// Whether an unknown value is passed on instead of being an error.
     passes_on: bool,
     /// The first one that was, and the error that it would have been.
     unknown: Option<(&'static str, Fault)>,
+}
+
+impl<'t> Deref for Reader<'t> {
+    type Target = Cursor<'t>;
+
+    fn deref(&self) -> &Cursor<'t> {
+        &self.cursor
+    }
+}
+
+impl<'t> DerefMut for Reader<'t> {
+    fn deref_mut(&mut self) -> &mut Cursor<'t> {
+        &mut self.cursor
+    }
 }
 
 /// The next few bytes without blanks, and where each ends.
@@ -45,56 +55,40 @@ struct Ahead {
     ends: [usize; AHEAD],
 }
 
-/// Names one parameter.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Name<'t> {
-    Number(u32),
-    Text(Cow<'t, str>),
-}
+impl Ahead {
+    /// Where as many bytes end.
+    fn end(&self, length: usize) -> Option<usize> {
+        self.ends.get(length.checked_sub(1)?).copied()
+    }
 
-impl std::fmt::Display for Name<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Number(number) => write!(f, "#{number}"),
-            Self::Text(name) => write!(f, "#<{name}>"),
-        }
+    /// The first of a table whose token is next, and its length.
+    fn first_of<'a, T>(
+        &self,
+        table: &'a [T],
+        token: impl Fn(&T) -> &str,
+    ) -> Option<(&'a T, usize)> {
+        let mut entries = table.iter().map(|entry| (entry, token(entry).as_bytes()));
+        let found = entries.find(|(_, token)| self.bytes.starts_with(token))?;
+        Some((found.0, found.1.len()))
     }
 }
 
-type Outcome<T> = Result<T, Fault>;
+/// A reader with the parameters that its text may use.
+struct WithVariables<'r, 't, V> {
+    reader: &'r mut Reader<'t>,
+    variables: &'r V,
+}
 
 impl<'t> Reader<'t> {
     pub(crate) fn new(text: &'t [u8], at: usize) -> Self {
+        let mut cursor = Cursor::new(text, Lexis::Blanks);
+        cursor.at = at;
         Self {
-            text,
-            at,
+            cursor,
             tape: Tape::default(),
-            depth: 0,
             passes_on: false,
             unknown: None,
         }
-    }
-
-    /// The next byte after blanks and comments, upper case; it stays.
-    pub(crate) fn peek(&mut self) -> Option<u8> {
-        loop {
-            match self.text.get(self.at)? {
-                b' ' | b'\t' => self.at += 1,
-                b'(' => {
-                    let rest = self.text.get(self.at..)?;
-                    self.at += memchr::memchr(b')', rest)? + 1;
-                }
-                b';' => return None,
-                byte => return Some(byte.to_ascii_uppercase()),
-            }
-        }
-    }
-
-    /// Takes `byte` if it is next.
-    pub(crate) fn take(&mut self, byte: u8) -> bool {
-        let next = self.peek() == Some(byte);
-        self.at += usize::from(next);
-        next
     }
 
     /// What comes next without its blanks, upper case: LinuxCNC reads past blanks
@@ -116,8 +110,7 @@ impl<'t> Reader<'t> {
 
     /// Takes as many bytes of what [`Self::ahead`] gave.
     fn take_ahead(&mut self, ahead: &Ahead, length: usize) {
-        let last = length.checked_sub(1).and_then(|last| ahead.ends.get(last));
-        self.at = last.copied().unwrap_or(self.at);
+        self.at = ahead.end(length).unwrap_or(self.at);
     }
 
     /// Takes a word of letters if it is next, in either case.
@@ -140,115 +133,25 @@ impl<'t> Reader<'t> {
         next
     }
 
-    /// What stands at the place, and where.
-    pub(crate) fn fault(
-        &self,
-        rule: &'static str,
-        message: impl Into<String>,
-        help: &'static str,
-        start: usize,
-    ) -> Fault {
-        let end = self.at.max(start + 1).min(self.text.len());
-        Fault::new(rule, message, help, Span::new(start.min(end), end))
+    fn with<'r, V>(&'r mut self, variables: &'r V) -> WithVariables<'r, 't, V> {
+        let reader = self;
+        WithVariables { reader, variables }
     }
 
     /// A number, a parameter, a function or brackets, with signs before it: what
     /// may stand after the letter of a word.
     pub(crate) fn value(&mut self, variables: &impl Variables) -> Outcome<Value> {
-        let start = self.at;
-        self.depth += 1;
-        if self.depth > DEPTH_MAX {
-            let message = format!("more than {DEPTH_MAX} brackets and signs in one another");
-            return Err(self.fault("expression", message, "take the expression apart", start));
-        }
-        let value = self.operand(variables);
-        self.depth -= 1;
-        value
-    }
-
-    fn operand(&mut self, variables: &impl Variables) -> Outcome<Value> {
-        match self.peek() {
-            Some(b'[') => self.brackets(variables),
-            Some(b'#') => self.parameter(variables),
-            Some(b'-') => {
-                self.at += 1;
-                let value = self.value(variables)?;
-                self.tape.push(Op::Negate);
-                Ok(value.map(|value| -value))
-            }
-            Some(b'+') => {
-                self.at += 1;
-                self.value(variables)
-            }
-            Some(b'0'..=b'9' | b'.') => {
-                let number = self.number(!variables.fanuc())?;
-                self.tape.push(Op::Number(number));
-                Ok(Some(number))
-            }
-            Some(b'A'..=b'Z') => self.function(variables).map(Some),
-            _ => {
-                let start = self.at;
-                self.at += 1;
-                Err(self.fault(
-                    "expression",
-                    "a value is missing here",
-                    "write a number, a parameter such as #1, or an expression in brackets",
-                    start,
-                ))
-            }
-        }
+        self.with(variables).operand()
     }
 
     /// `[ … ]`.
     pub(crate) fn brackets(&mut self, variables: &impl Variables) -> Outcome<Value> {
         let start = self.at;
-        if !self.take(b'[') {
+        if self.peek() != Some(b'[') {
             let message = "`[` is missing here";
             return Err(self.fault("expression", message, "write [ … ]", start));
         }
-        let value = self.expression(variables)?;
-        if !self.take(b']') {
-            let message = "`]` is missing here";
-            let help = "close each bracket, and write operators between values";
-            return Err(self.fault("expression", message, help, self.at));
-        }
-        Ok(value)
-    }
-
-    /// Operands with operators between them.
-    pub(crate) fn expression(&mut self, variables: &impl Variables) -> Outcome<Value> {
-        self.operators(0, variables)
-    }
-
-    /// Operators that bind tighter than `least`, from the left.
-    fn operators(&mut self, least: u8, variables: &impl Variables) -> Outcome<Value> {
-        let mut left = self.value(variables)?;
-        let fanuc = variables.fanuc();
-        loop {
-            // Most values have nothing after them.
-            let may_follow =
-                |byte: u8| byte.is_ascii_alphabetic() || matches!(byte, b'*' | b'/' | b'+' | b'-');
-            if !self.peek().is_some_and(may_follow) {
-                return Ok(left);
-            }
-            let ahead = self.ahead();
-            let Some((found, length)) = operator::read(&ahead.bytes, fanuc) else {
-                return Ok(left);
-            };
-            let precedence = operator::precedence(found);
-            if precedence <= least {
-                return Ok(left);
-            }
-            let start = self.at;
-            self.take_ahead(&ahead, length);
-            self.depth += 1;
-            let right = self.operators(precedence, variables)?;
-            self.depth -= 1;
-            let result = operator::apply(found, left, right, fanuc)
-                .map_err(|wrong| self.impossible(wrong, start))?;
-            self.tape.push(Op::Apply(found));
-            left = Some(self.finite(result, start)?);
-        }
+        self.with(variables).in_brackets()
     }
 
     /// An unsigned number; `blanks` may stand between its digits.
@@ -261,28 +164,11 @@ impl<'t> Reader<'t> {
         let length = rest.iter().take_while(|byte| of_number(byte)).count();
         let text = rest.get(..length).unwrap_or_default().trim_ascii_end();
         self.at = start + text.len();
-        if !text.is_empty() && text.len() <= EXACT_DIGITS && text.iter().all(u8::is_ascii_digit) {
-            let digits = text.iter().map(|digit| u64::from(digit - b'0'));
-            return Ok(digits.fold(0, |sum, digit| sum * 10 + digit) as f64);
+        if let Some(value) = exact_decimal(text) {
+            return Ok(value);
         }
-        let plain = if text.contains(&b' ') || text.contains(&b'\t') {
-            let digits = text.iter().filter(|byte| !matches!(byte, b' ' | b'\t'));
-            Cow::Owned(digits.copied().collect::<Vec<u8>>())
-        } else {
-            Cow::Borrowed(text)
-        };
-        let value = std::str::from_utf8(&plain)
-            .ok()
-            .and_then(|text| text.parse::<f64>().ok());
-        match value {
-            Some(value) if value.is_finite() => Ok(value),
-            _ => Err(self.fault(
-                "expression",
-                format!("`{}` is not a number", excerpt(text, 40)),
-                "write digits with at most one point",
-                start,
-            )),
-        }
+        let digits = text.iter().filter(|byte| !matches!(byte, b' ' | b'\t'));
+        self.parsed(&digits.copied().collect::<Vec<u8>>(), start)
     }
 
     /// `#5`, `##5`, `#[…]` or `#<name>` and what it holds.
@@ -327,7 +213,7 @@ impl<'t> Reader<'t> {
     /// which is no error before something depends on it.
     pub(crate) fn assigned(&mut self, variables: &impl Variables) -> Outcome<Held> {
         self.passes_on = true;
-        let value = self.expression(variables);
+        let value = self.with(variables).expression();
         self.passes_on = false;
         match self.unknown.take() {
             None => value.map(Ok),
@@ -379,63 +265,16 @@ impl<'t> Reader<'t> {
         Ok(Cow::Owned(letters.collect::<String>().to_ascii_lowercase()))
     }
 
-    /// A function with its argument in brackets.
-    fn function(&mut self, variables: &impl Variables) -> Outcome<f64> {
-        let start = self.at;
-        let ahead = self.ahead();
-        let fanuc = variables.fanuc();
-        let Some((function, length)) = Function::read(&ahead.bytes, fanuc) else {
-            let rest = self.text.get(start..).unwrap_or_default();
-            let letters = rest.iter().take_while(|byte| byte.is_ascii_alphabetic());
-            self.at += letters.count();
-            let name = excerpt(self.text.get(start..self.at).unwrap_or_default(), 40);
-            let message = format!("`{name}` is no function");
-            let help =
-                "the functions are ABS ACOS ASIN ATAN COS EXISTS EXP FIX FUP LN ROUND SIN SQRT TAN";
-            return Err(self.fault("expression", message, help, start));
-        };
-        self.take_ahead(&ahead, length);
-        if function == Function::Exists {
-            return self.exists(variables);
-        }
-        if !self.take(b'[') {
-            let message = "the argument of a function stands in brackets";
-            return Err(self.fault("expression", message, "write SIN[…]", start));
-        }
-        let x = self.expression(variables)?.unwrap_or(0.0);
-        let second = if fanuc && self.take(b',') {
-            Some(self.expression(variables)?.unwrap_or(0.0))
-        } else {
-            None
-        };
-        if !self.take(b']') {
-            let message = "`]` is missing here";
-            let help = "close each bracket, and write operators between values";
-            return Err(self.fault("expression", message, help, self.at));
-        }
-        let (result, op) = match (function, second) {
-            (Function::Power, Some(exponent)) => (
-                operator::apply(Operator::Power, Some(x), Some(exponent), fanuc),
-                Op::Apply(Operator::Power),
-            ),
-            (Function::Atan, Some(across)) => (Ok(libm::atan2(x, across).to_degrees()), Op::Angle),
-            (_, Some(_)) => {
-                let wrong = "a second argument of a function that takes one";
-                return Err(self.impossible(wrong, start));
-            }
-            // ATAN[y]/[x] is one function of two values.
-            (Function::Atan, None) if self.slash_bracket() => {
-                let across = self.brackets(variables)?.unwrap_or(0.0);
-                (Ok(libm::atan2(x, across).to_degrees()), Op::Angle)
-            }
-            (Function::Atan, None) if !fanuc => {
-                return Err(self.impossible("ATAN[…] without /[…] after it", start));
-            }
-            (function, None) => (function.apply(x, fanuc), Op::Of(function)),
-        };
-        self.tape.push(op);
-        let result = result.map_err(|wrong| self.impossible(wrong, start))?;
-        self.finite(result, start)
+    /// What stands at `start` names no function.
+    fn no_function(&mut self, start: usize) -> Fault {
+        let rest = self.text.get(start..).unwrap_or_default();
+        let letters = rest.iter().take_while(|byte| byte.is_ascii_alphabetic());
+        self.at += letters.count();
+        let name = excerpt(self.text.get(start..self.at).unwrap_or_default(), 40);
+        let message = format!("`{name}` is no function");
+        let help =
+            "the functions are ABS ACOS ASIN ATAN COS EXISTS EXP FIX FUP LN ROUND SIN SQRT TAN";
+        self.fault("expression", message, help, start)
     }
 
     /// `/[` is next: the slash is taken.
@@ -464,18 +303,122 @@ impl<'t> Reader<'t> {
             Name::Number(number) => variables.numbered(*number),
             Name::Text(name) => variables.named(name),
         };
-        Ok(f64::from(u8::from(read != Read::Missing)))
+        Ok(truth(read != Read::Missing))
+    }
+}
+
+impl<'t, V: Variables> Grammar<'t> for WithVariables<'_, 't, V> {
+    type Value = Value;
+
+    fn terms(&self) -> &'static Terms {
+        terms_of(self.variables)
     }
 
-    fn impossible(&self, wrong: &'static str, start: usize) -> Fault {
-        let help = "check the values that go into it";
-        self.fault("arithmetic", wrong, help, start)
+    fn cursor(&mut self) -> &mut Cursor<'t> {
+        self.reader
     }
 
-    fn finite(&self, value: f64, start: usize) -> Outcome<f64> {
-        if value.is_finite() {
-            return Ok(value);
+    /// Null is 0.
+    fn number_of(&self, value: &Value, _start: usize) -> Outcome<f64> {
+        Ok(value.unwrap_or(0.0))
+    }
+
+    fn value_of(&mut self, number: f64) -> Value {
+        self.reader.tape.push(Op::Number(number));
+        Some(number)
+    }
+
+    fn written_number(&mut self) -> Outcome<f64> {
+        self.reader.number(!self.variables.fanuc())
+    }
+
+    fn next_infix(&mut self) -> Option<(Infix, usize)> {
+        // Most values have nothing after them.
+        let may_follow =
+            |byte: u8| byte.is_ascii_alphabetic() || matches!(byte, b'*' | b'/' | b'+' | b'-');
+        if !self.reader.peek().is_some_and(may_follow) {
+            return None;
         }
-        Err(self.impossible("a result beyond all numbers", start))
+        let ahead = self.reader.ahead();
+        let (found, length) = ahead.first_of(self.terms().infixes, |(token, ..)| token)?;
+        Some((*found, ahead.end(length)?))
+    }
+
+    fn infix(
+        &mut self,
+        operator: Operator,
+        left: Value,
+        right: Value,
+        start: usize,
+    ) -> Outcome<Value> {
+        let result = infix(operator, left, right, self.variables);
+        self.reader.tape.push(Op::Infix(operator));
+        self.reader.worked_out(result, start).map(Some)
+    }
+
+    /// The only one is a sign, which leaves null as it is.
+    fn prefix(&mut self, _prefix: Prefix, value: Value, _start: usize) -> Outcome<Value> {
+        self.reader.tape.push(Op::Negate);
+        Ok(value.map(|value| -value))
+    }
+
+    fn own_operand(&mut self) -> Outcome<Value> {
+        match self.reader.peek() {
+            Some(b'#') => self.reader.parameter(self.variables),
+            Some(b'A'..=b'Z') => self.function().map(Some),
+            _ => {
+                let start = self.reader.at;
+                self.reader.at += 1;
+                Err(self.reader.fault(
+                    "expression",
+                    "a value is missing here",
+                    "write a number, a parameter such as #1, or an expression in brackets",
+                    start,
+                ))
+            }
+        }
+    }
+}
+
+impl<V: Variables> WithVariables<'_, '_, V> {
+    /// A function with its argument in brackets.
+    fn function(&mut self) -> Outcome<f64> {
+        let start = self.reader.at;
+        let ahead = self.reader.ahead();
+        let fanuc = self.variables.fanuc();
+        let found = ahead.first_of(self.terms().functions, |(name, _)| name);
+        let Some((&(_, function), length)) = found else {
+            return Err(self.reader.no_function(start));
+        };
+        self.reader.take_ahead(&ahead, length);
+        if function == Function::Exists {
+            return self.reader.exists(self.variables);
+        }
+        if !self.reader.take(b'[') {
+            let message = "the argument of a function stands in brackets";
+            let help = "write SIN[…]";
+            return Err(self.reader.fault("expression", message, help, start));
+        }
+        let (mut values, count) = self.arguments(1, if fanuc { 2 } else { 1 })?;
+        let [_, across, _] = &mut values;
+        let function = match (function, count) {
+            // ATAN[y]/[x] is one function of two values.
+            (Function::Atan, 1) if self.reader.slash_bracket() => {
+                *across = self.in_brackets()?.unwrap_or(0.0);
+                Ok(Function::Angle)
+            }
+            (Function::Atan, 1) if !fanuc => Err("ATAN[…] without /[…] after it"),
+            (Function::Atan, 2) => Ok(Function::Angle),
+            (Function::Power, 1) => Err("a function of another form"),
+            (function, count) if count > function.values() => {
+                Err("a second argument of a function that takes one")
+            }
+            (function, _) => Ok(function),
+        };
+        let result = function.and_then(|function| {
+            self.reader.tape.push(Op::Of(function));
+            function.apply(values)
+        });
+        self.reader.worked_out(result, start)
     }
 }

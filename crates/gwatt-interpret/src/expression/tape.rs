@@ -7,9 +7,8 @@
 use arrayvec::ArrayVec;
 
 use super::function::Function;
-use super::operator;
-use super::value::{Read, Value, Variables};
-use crate::operator::Operator;
+use super::operator::Operator;
+use super::value::{Name, Read, Value, Variables, infix};
 
 /// Values that wait for an operator.
 const WAITING_MAX: usize = 16;
@@ -23,10 +22,8 @@ pub(crate) enum Op {
     Named(Box<str>),
     Indirect,
     Negate,
-    Apply(Operator),
+    Infix(Operator),
     Of(Function),
-    /// `ATAN[y]/[x]`.
-    Angle,
 }
 
 /// Notes steps while a text is read, if it records at all.
@@ -56,16 +53,16 @@ impl Tape {
     }
 
     /// A parameter is used whose name was read from step `from` on.
-    pub(super) fn load(&mut self, from: usize, name: &super::Name<'_>) {
+    pub(super) fn load(&mut self, from: usize, name: &Name<'_>) {
         if !self.records {
             return;
         }
         match name {
-            super::Name::Text(text) => self.ops.push(Op::Named(Box::from(text.as_ref()))),
-            super::Name::Number(number) if self.forget_number(from) => {
+            Name::Text(text) => self.ops.push(Op::Named(Box::from(text.as_ref()))),
+            Name::Number(number) if self.forget_number(from) => {
                 self.ops.push(Op::Numbered(*number));
             }
-            super::Name::Number(_) => self.ops.push(Op::Indirect),
+            Name::Number(_) => self.ops.push(Op::Indirect),
         }
     }
 }
@@ -81,7 +78,6 @@ pub(crate) fn parameter_number(value: Value) -> Option<u32> {
 /// What the steps lead to. `None` where anything is wrong, which the text then
 /// shows.
 pub(crate) fn work_out(ops: &[Op], variables: &impl Variables) -> Option<Value> {
-    let fanuc = variables.fanuc();
     let mut waiting: ArrayVec<Value, WAITING_MAX> = ArrayVec::new();
     // The last value stays out of the stack.
     let mut last = match ops.first()? {
@@ -103,17 +99,17 @@ pub(crate) fn work_out(ops: &[Op], variables: &impl Variables) -> Option<Value> 
                 last = last.map(|value| -value);
                 continue;
             }
-            Op::Apply(found) => {
-                last = finite(operator::apply(*found, waiting.pop()?, last, fanuc))?;
+            Op::Infix(operator) => {
+                last = Some(infix(*operator, waiting.pop()?, last, variables).ok()?);
                 continue;
             }
             Op::Of(function) => {
-                last = finite(function.apply(last.unwrap_or(0.0), fanuc))?;
-                continue;
-            }
-            Op::Angle => {
-                let y = waiting.pop()?.unwrap_or(0.0);
-                last = Some(libm::atan2(y, last.unwrap_or(0.0)).to_degrees());
+                let value = last.unwrap_or(0.0);
+                let values = match function.values() {
+                    2 => [waiting.pop()?.unwrap_or(0.0), value, 0.0],
+                    _ => [value, 0.0, 0.0],
+                };
+                last = Some(function.apply(values).ok()?);
                 continue;
             }
         };
@@ -128,9 +124,4 @@ fn known(read: Read) -> Option<Value> {
         Read::Value(value) => Some(value),
         Read::Unknown(_) | Read::Missing => None,
     }
-}
-
-fn finite(result: Result<f64, &'static str>) -> Option<Value> {
-    let value = result.ok()?;
-    value.is_finite().then_some(Some(value))
 }

@@ -1,9 +1,29 @@
-//! Values, and where those of parameters come from.
+//! Values of RS274/NGC and Fanuc, and where those of parameters come from.
 
-use gwatt_syntax::source::Span;
+use std::borrow::Cow;
+
+use super::macro_terms::{MACRO_B, RS274};
+use super::operator::{Operator, truth};
+use super::terms::Terms;
 
 /// A value; `None` is Fanuc's null, a variable that was never given one.
 pub(crate) type Value = Option<f64>;
+
+/// Names one parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Name<'t> {
+    Number(u32),
+    Text(Cow<'t, str>),
+}
+
+impl std::fmt::Display for Name<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "#{number}"),
+            Self::Text(name) => write!(f, "#<{name}>"),
+        }
+    }
+}
 
 /// Why a variable that outlasts a program is unknown.
 pub(crate) const KEPT: &str = "what the control has kept from before";
@@ -70,27 +90,25 @@ pub(crate) trait Variables {
     fn fanuc(&self) -> bool;
 }
 
-/// Why a text has no value.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Fault {
-    pub(crate) rule: &'static str,
-    pub(crate) message: String,
-    pub(crate) help: &'static str,
-    pub(crate) span: Span,
+/// The tables of the language that these parameters belong to.
+pub(super) fn terms_of(variables: &impl Variables) -> &'static Terms {
+    if variables.fanuc() { &MACRO_B } else { &RS274 }
 }
 
-impl Fault {
-    pub(crate) fn new(
-        rule: &'static str,
-        message: impl Into<String>,
-        help: &'static str,
-        span: Span,
-    ) -> Self {
-        Self {
-            rule,
-            message: message.into(),
-            help,
-            span,
+/// The result of an operator, or what is wrong.
+pub(super) fn infix(
+    operator: Operator,
+    left: Value,
+    right: Value,
+    variables: &impl Variables,
+) -> Result<f64, &'static str> {
+    // Fanuc: null equals null only, and is 0 everywhere else.
+    if variables.fanuc() && (left.is_none() || right.is_none()) {
+        match operator {
+            Operator::Equal => return Ok(truth(left == right)),
+            Operator::NotEqual => return Ok(truth(left != right)),
+            _ => {}
         }
     }
+    terms_of(variables).infix(operator, left.unwrap_or(0.0), right.unwrap_or(0.0))
 }

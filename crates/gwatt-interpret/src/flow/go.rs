@@ -60,26 +60,31 @@ impl Flow {
             Go::File(name) => self.call_file(&name, interpreter)?,
             Go::Modal(name) => self.modal_named = name.map(|name| (name, self.calls.len())),
             Go::Call { name, times } => self.call_osp(&name, times, interpreter)?,
-            Go::Return => {
-                if self.leave(interpreter).is_none() {
-                    interpreter.end();
-                }
-            }
+            Go::Return => self.leave_or_end(interpreter),
         }
         Ok(())
     }
 
-    fn landmarks(&mut self, text: usize) -> Result<&Landmarks, FlowError> {
-        let dollar = self.percent_names_programs;
+    /// What the lines of a text are, found when it is first asked for.
+    pub(super) fn landmarks(&mut self, text: usize) -> Result<&Landmarks, FlowError> {
+        let find = match (self.is_siemens, self.percent_names_programs) {
+            (true, _) => Landmarks::of_siemens,
+            (_, true) => Landmarks::of_isg,
+            _ => Landmarks::of_osp,
+        };
         let text = self.texts.get_mut(text);
-        text.map(|text| text.landmarks(dollar))
+        text.map(|text| text.landmarks(find))
             .ok_or_else(|| FlowError::new("flow", "there is no such text", ""))
     }
 
-    /// The structure that the line belongs to.
+    /// The structure that the line belongs to, if any.
+    pub(super) fn part_here(&mut self) -> Result<Option<Part>, FlowError> {
+        let Place { text, line } = self.now;
+        Ok(self.landmarks(text)?.part(line))
+    }
+
     fn part(&mut self) -> Result<Part, FlowError> {
-        let line = self.now.line;
-        self.landmarks(self.now.text)?.part(line).ok_or_else(|| {
+        self.part_here()?.ok_or_else(|| {
             let message = "the other end of this statement is missing";
             let help = "give each $IF, $SWITCH, $FOR, $WHILE, $DO and $REPEAT its end";
             FlowError::new("structure", message, help)
@@ -87,8 +92,7 @@ impl Flow {
     }
 
     fn around(&mut self) -> Result<usize, FlowError> {
-        let line = self.now.line;
-        let part = self.landmarks(self.now.text)?.part(line);
+        let part = self.part_here()?;
         part.and_then(|part| part.around).ok_or_else(|| {
             let message = "there is no loop around this";
             let help = "write $BREAK in a loop or $SWITCH, $CONTINUE in a loop";
@@ -97,8 +101,7 @@ impl Flow {
     }
 
     fn jump_to(&mut self, label: &str) -> Result<(), FlowError> {
-        let line = self.now.line;
-        let len = self.texts.get(self.now.text).map_or(0, Text::len);
+        let (line, len) = (self.now.line, self.len());
         let found = self.landmarks(self.now.text)?.find(label, line, len);
         let Some(found) = found else {
             let message = format!("there is no {label} to jump to in this program");
@@ -109,22 +112,30 @@ impl Flow {
         Ok(())
     }
 
+    pub(super) fn len(&self) -> usize {
+        self.texts.get(self.now.text).map_or(0, Text::len)
+    }
+
+    /// Back to the caller; a main program ends.
+    pub(super) fn leave_or_end(&mut self, interpreter: &mut Interpreter<'_>) {
+        if self.leave(interpreter).is_none() {
+            interpreter.end();
+        }
+    }
+
     fn call_local(
         &mut self,
         name: &str,
         interpreter: &mut Interpreter<'_>,
     ) -> Result<(), FlowError> {
         let text = self.now.text;
-        let Some(line) = self.landmarks(text)?.program(name) else {
+        let name_in_text = name.to_ascii_uppercase();
+        let Some(line) = self.landmarks(text)?.program(&name_in_text, false) else {
             let message = format!("there is no local subprogram {name} in this file");
             let help = "define it before the main program, by %L and its name";
             return Err(FlowError::new("no-such-subprogram", message, help));
         };
-        let begin = Place {
-            text,
-            line: line + 1,
-        };
-        self.enter_named(begin, 1, interpreter)
+        self.enter_named(Place { text, line }, 1, interpreter)
     }
 
     fn call_file(
@@ -149,14 +160,9 @@ impl Flow {
         times: u64,
         interpreter: &mut Interpreter<'_>,
     ) -> Result<(), FlowError> {
-        for text in 0..self.texts.len() {
-            if let Some(line) = self.landmarks(text)?.program(name) {
-                let begin = Place {
-                    text,
-                    line: line + 1,
-                };
-                return self.enter_named(begin, times, interpreter);
-            }
+        let head = name.to_ascii_uppercase();
+        if let Some(begin) = self.find_head(&head, false)? {
+            return self.enter_named(begin, times, interpreter);
         }
         let short = name.strip_prefix('O').unwrap_or(name);
         let names = ["SSB", "SUB", "LIB", "MSB", "MIN"]
@@ -164,17 +170,22 @@ impl Flow {
             .flat_map(|ending| [format!("{name}.{ending}"), format!("{short}.{ending}")])
             .collect::<Vec<_>>();
         let text = self.text_named(name, &names)?;
-        let line = self.landmarks(text)?.program(name);
-        let Some(line) = line else {
+        let Some(line) = self.landmarks(text)?.program(&head, false) else {
             let message = format!("the file of {name} does not hold it");
             let help = "begin the subprogram by its name";
             return Err(FlowError::new("no-such-subprogram", message, help));
         };
-        let begin = Place {
-            text,
-            line: line + 1,
-        };
-        self.enter_named(begin, times, interpreter)
+        self.enter_named(Place { text, line }, times, interpreter)
+    }
+
+    /// Where a subprogram, or a main program (`main`), begins in the texts that are there.
+    pub(super) fn find_head(&mut self, name: &str, main: bool) -> Result<Option<Place>, FlowError> {
+        for text in 0..self.texts.len() {
+            if let Some(line) = self.landmarks(text)?.program(name, main) {
+                return Ok(Some(Place { text, line }));
+            }
+        }
+        Ok(None)
     }
 
     /// Calls the subprogram that MODIN has set, after a block that moved.
@@ -203,13 +214,18 @@ impl Flow {
             );
             return Err(FlowError::new("no-such-subprogram", message, help));
         };
+        Ok(self.add_named(name, bytes))
+    }
+
+    /// Keeps a text that was loaded by the name of its subprogram.
+    pub(super) fn add_named(&mut self, name: &str, bytes: Vec<u8>) -> usize {
         let text = self.texts.len();
         self.texts.push(Text::new(bytes));
         self.named.push((name.to_owned(), text));
-        Ok(text)
+        text
     }
 
-    fn enter_named(
+    pub(super) fn enter_named(
         &mut self,
         begin: Place,
         times: u64,

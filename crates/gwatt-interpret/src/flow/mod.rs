@@ -12,7 +12,6 @@ pub(crate) mod limits;
 mod macro_b;
 mod macro_file;
 mod o_word;
-mod outline;
 mod place;
 mod section;
 mod siemens;

@@ -1,13 +1,11 @@
 //! The order of execution in SINUMERIK programs ("Job Planning": jumps, check
 //! structures, repetition of sections, subprograms).
 
-use super::outline::Outline;
+use super::landmarks::Part;
 use super::section::Section;
-use super::text::Text;
-use super::{Flow, FlowError, Place, Style};
+use super::{Flow, FlowError, Place};
 use crate::execute::Interpreter;
 use crate::jump::{Direction, Siemens};
-use crate::parameters::LOCALS;
 
 impl Flow {
     pub(super) fn siemens(
@@ -23,16 +21,15 @@ impl Flow {
             Siemens::If(false) | Siemens::Else => self.behind_partner("ENDIF"),
             Siemens::While(false) => self.behind_partner("ENDWHILE or ENDFOR"),
             Siemens::Until(false) => {
-                let begin = self.partner("REPEAT")?;
-                self.next.line = begin + 1;
+                self.next.line = self.partner("REPEAT")?.begin + 1;
                 Ok(())
             }
             Siemens::Back => {
-                let begin = self.partner("beginning")?;
-                if self.outline(self.now.text)?.counts(begin) {
+                let part = self.partner("beginning")?;
+                if part.counts {
                     interpreter.count_on();
                 }
-                self.next.line = begin;
+                self.next.line = part.begin;
                 Ok(())
             }
             Siemens::Jump {
@@ -53,9 +50,7 @@ impl Flow {
                 self.call_siemens(&name, times, interpreter)
             }
             Siemens::Return => {
-                if self.leave(interpreter).is_none() {
-                    interpreter.end();
-                }
+                self.leave_or_end(interpreter);
                 let depth = self.calls.len();
                 self.sections.retain(|section| section.depth <= depth);
                 Ok(())
@@ -63,16 +58,8 @@ impl Flow {
         }
     }
 
-    /// The outline of a text, made when it is first asked for.
-    fn outline(&mut self, text: usize) -> Result<&Outline, FlowError> {
-        let text = self.texts.get_mut(text);
-        text.map(Text::outline)
-            .ok_or_else(|| FlowError::new("flow", "there is no such text", ""))
-    }
-
-    fn partner(&mut self, what: &str) -> Result<usize, FlowError> {
-        let line = self.now.line;
-        self.outline(self.now.text)?.partner(line).ok_or_else(|| {
+    fn partner(&mut self, what: &str) -> Result<Part, FlowError> {
+        self.part_here()?.ok_or_else(|| {
             let message = format!("there is no {what} for this");
             FlowError::new(
                 "structure",
@@ -83,24 +70,20 @@ impl Flow {
     }
 
     fn behind_partner(&mut self, what: &str) -> Result<(), FlowError> {
-        self.next.line = self.partner(what)? + 1;
+        self.next.line = self.partner(what)?.next + 1;
         Ok(())
-    }
-
-    fn len(&self) -> usize {
-        self.texts.get(self.now.text).map_or(0, Text::len)
     }
 
     fn jump(&mut self, to: &str, direction: Direction, quiet: bool) -> Result<(), FlowError> {
         let (here, len) = (self.now.line, self.len());
-        let outline = self.outline(self.now.text)?;
+        let marks = self.landmarks(self.now.text)?;
         let found = match direction {
-            Direction::Start => Some(outline.start(here)),
-            Direction::Forwards => outline.forwards(to, here, len),
-            Direction::Backwards => outline.backwards(to, here),
-            Direction::Both => outline
+            Direction::Start => Some(marks.start(here)),
+            Direction::Forwards => marks.forwards(to, here, len),
+            Direction::Backwards => marks.backwards(to, here),
+            Direction::Both => marks
                 .forwards(to, here, len)
-                .or_else(|| outline.backwards(to, here)),
+                .or_else(|| marks.backwards(to, here)),
         };
         match found {
             Some(line) => self.next.line = line,
@@ -124,11 +107,11 @@ impl Flow {
         times: u64,
     ) -> Result<(), FlowError> {
         let (here, len) = (self.now.line, self.len());
-        let outline = self.outline(self.now.text)?;
+        let marks = self.landmarks(self.now.text)?;
         let find = |label: &str| {
-            outline
+            marks
                 .backwards(label, here)
-                .or_else(|| outline.forwards(label, here, len))
+                .or_else(|| marks.forwards(label, here, len))
         };
         let missing = |label: &str| {
             let message = format!("there is no {label} to repeat");
@@ -139,8 +122,8 @@ impl Flow {
         let last = match to {
             _ if block => first,
             Some(to) => find(to).ok_or_else(|| missing(to))?,
-            None if first > here => outline.label_end(first, len).unwrap_or(first),
-            None => outline
+            None if first > here => marks.label_end(first, len).unwrap_or(first),
+            None => marks
                 .label_end(first, here)
                 .unwrap_or(here.saturating_sub(1)),
         };
@@ -209,8 +192,7 @@ impl Flow {
             return Ok(());
         }
         let begin = self.find_siemens(name)?;
-        let own = Some(Box::new([None; LOCALS]));
-        self.enter(begin, times, own, Style::Program, interpreter)
+        self.enter_named(begin, times, interpreter)
     }
 
     /// A subprogram: in the texts that are there, or in a file of its own. A main program
@@ -229,28 +211,16 @@ impl Flow {
                 line: 0,
             });
         }
-        if let Some(place) = self.find_header(stem, false)? {
+        if let Some(place) = self.find_head(stem, false)? {
             return Ok(place);
         }
-        let main = self.find_header(stem, true)?;
+        let main = self.find_head(stem, true)?;
         let bytes = match (self.library.load_subprogram(stem)?, main) {
             (Some(bytes), _) => bytes,
             (None, Some(place)) => return Ok(place),
             (None, None) => self.library.load_siemens(stem)?,
         };
-        let text = self.texts.len();
-        self.texts.push(Text::new(bytes));
-        self.named.push((stem.to_owned(), text));
+        let text = self.add_named(stem, bytes);
         Ok(Place { text, line: 0 })
-    }
-
-    /// A program or subprogram with a header, in the texts that are there.
-    fn find_header(&mut self, stem: &str, main: bool) -> Result<Option<Place>, FlowError> {
-        for text in 0..self.texts.len() {
-            if let Some(line) = self.outline(text)?.program(stem, main) {
-                return Ok(Some(Place { text, line }));
-            }
-        }
-        Ok(None)
     }
 }

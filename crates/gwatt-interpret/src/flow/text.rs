@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 
 use super::landmarks::Landmarks;
-use super::outline::Outline;
 use crate::execute::Interpreter;
 use crate::expression::Fault;
 use crate::label::Label;
@@ -23,7 +22,6 @@ pub(super) struct Text {
     /// Lines that run again and again, as they were read.
     blocks: Vec<Option<Box<Block>>>,
     index: Option<Index>,
-    outline: Option<Box<Outline>>,
     landmarks: Option<Box<Landmarks>>,
     /// Places that have been looked for before.
     found: HashMap<(Search, usize), Option<usize>>,
@@ -72,24 +70,15 @@ impl Text {
             runs: vec![0; count],
             blocks: Vec::new(),
             index: None,
-            outline: None,
             landmarks: None,
             found: HashMap::new(),
         }
     }
 
-    /// What the lines of a SINUMERIK text are.
-    pub(super) fn outline(&mut self) -> &Outline {
-        if self.outline.is_none() {
-            self.outline = Some(Box::new(Outline::new(self)));
-        }
-        self.outline.get_or_insert_default()
-    }
-
-    /// What the lines of a text of the ISG kernel (`dollar`) or of OSP are.
-    pub(super) fn landmarks(&mut self, dollar: bool) -> &Landmarks {
+    /// What its lines are, as `find` finds it.
+    pub(super) fn landmarks(&mut self, find: fn(&Self) -> Landmarks) -> &Landmarks {
         if self.landmarks.is_none() {
-            self.landmarks = Some(Box::new(Landmarks::new(self, dollar)));
+            self.landmarks = Some(Box::new(find(self)));
         }
         self.landmarks.get_or_insert_default()
     }

@@ -2,8 +2,8 @@
 
 use super::Isg;
 use crate::control::Control;
+use crate::expression::{Cursor, Grammar, Lexis, Outcome, Uses};
 use crate::fast_path::is_direct;
-use crate::formula::{Cursor, Lexis, Outcome, Uses, whole_value};
 use crate::jump::Go;
 use crate::macro_block::{Note, not_finite};
 use crate::own_state::OwnState;
@@ -68,7 +68,7 @@ impl Control<'_> {
             uses: Uses::default(),
             dwells: false,
         };
-        let value = whole_value(&mut Cursor::new(text, Lexis::Comments), &mut reading);
+        let value = reading.whole();
         self.own = OwnState::Isg(state);
         value
     }

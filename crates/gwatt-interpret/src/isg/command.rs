@@ -1,7 +1,7 @@
 //! Commands that begin with `#` ("Additional functions (#..)").
 
 use super::block::Reading;
-use crate::formula::{Cursor, Outcome, expression};
+use crate::expression::{Grammar, Outcome};
 use crate::jump::Go;
 use gwatt_syntax::Block;
 
@@ -208,10 +208,7 @@ impl Reading<'_, '_, '_> {
                 return Err(self.cursor.fault("syntax", message, help, start));
             };
             self.cursor.take(b'=');
-            let mut cursor: Cursor<'_> = self.cursor.clone();
-            let value = expression(&mut cursor, self);
-            self.cursor = cursor;
-            *slot = Some(value?);
+            *slot = Some(self.number()?);
             self.cursor.take(b',');
         }
         Ok(values)

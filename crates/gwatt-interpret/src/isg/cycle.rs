@@ -3,7 +3,7 @@
 //! the axes by their places in the plane.
 
 use super::block::Reading;
-use crate::formula::{Cursor, Ident, Outcome};
+use crate::expression::{Cursor, Grammar, Ident, Outcome};
 use crate::jump::Go;
 use gwatt_machine::ALL_AXES;
 use gwatt_syntax::Block;
@@ -46,9 +46,7 @@ impl Reading<'_, '_, '_> {
         while !self.cursor.take(b']') {
             let from = self.cursor.at;
             if is_parameter(&self.cursor) {
-                let mut cursor = self.cursor.clone();
-                let name = parameter_name(&mut cursor)?;
-                self.cursor = cursor;
+                let name = parameter_name(&mut self.cursor)?;
                 self.cursor.expect(b'=')?;
                 if self.cursor.peek() == Some(b'"') {
                     return Err(self.cursor.refused("a text for a cycle", "no number", from));

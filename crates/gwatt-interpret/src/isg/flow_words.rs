@@ -4,7 +4,7 @@
 
 use super::Pending;
 use super::block::Reading;
-use crate::formula::Outcome;
+use crate::expression::{Grammar, Outcome};
 use crate::jump::Go;
 use gwatt_syntax::Block;
 
@@ -117,10 +117,7 @@ impl Reading<'_, '_, '_> {
     /// `$FOR P1 = first, last, step` ("Counting loop"): the variable is counted
     /// at the end of each pass.
     fn counting(&mut self, pending: Pending, start: usize) -> Outcome<Go> {
-        let mut cursor = self.cursor.clone();
-        let name = self.variable_name(&mut cursor)?;
-        self.cursor = cursor;
-        let Some(name) = name else {
+        let Some(name) = self.variable_name()? else {
             let message = "$FOR without the variable that counts";
             let help = "write $FOR P1 = 1, 10, 1";
             return Err(self.cursor.fault("flow", message, help, start));

@@ -12,6 +12,7 @@ mod flow_words;
 mod ramp;
 mod rotation;
 mod system;
+mod terms;
 mod variable;
 mod word;
 
@@ -19,7 +20,7 @@ pub(super) use block::is_local;
 
 use std::collections::HashMap;
 
-use super::formula::Kept;
+use super::expression::Kept;
 use gwatt_syntax::Block;
 
 /// What a control of this language keeps besides the modal state.

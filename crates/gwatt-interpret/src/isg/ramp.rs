@@ -2,7 +2,7 @@
 //! in percent of the machine's ramp times.
 
 use super::block::Reading;
-use crate::formula::Outcome;
+use crate::expression::{Grammar, Outcome};
 use gwatt_machine::AxisId;
 use gwatt_syntax::Block;
 

@@ -2,7 +2,7 @@
 //! what G68 and G69 do.
 
 use super::block::Reading;
-use crate::formula::Outcome;
+use crate::expression::Outcome;
 use gwatt_machine::ALL_AXES;
 use gwatt_syntax::Block;
 

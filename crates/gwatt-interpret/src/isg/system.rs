@@ -2,7 +2,7 @@
 //! turns of the coordinates, put into one another.
 
 use super::block::Reading;
-use crate::formula::{Cursor, Outcome, expression};
+use crate::expression::{Grammar, Outcome};
 use crate::frame::Affine;
 
 /// Coordinate systems that can be stored at the same time.
@@ -135,10 +135,7 @@ impl Reading<'_, '_, '_> {
             } else if self.cursor.take(b']') {
                 break;
             } else if pending && values.len() < 6 {
-                let mut cursor: Cursor<'_> = self.cursor.clone();
-                let value = expression(&mut cursor, self);
-                self.cursor = cursor;
-                values.push(Some(value?));
+                values.push(Some(self.number()?));
                 pending = false;
             } else {
                 return Err(self.system_fault("more than three shifts and three angles", start));

@@ -3,7 +3,8 @@
 
 use super::block::Reading;
 use super::cycle::parameter_name;
-use crate::formula::{Cursor, Ident, Names, Outcome, Style, expression, keep};
+use super::terms::TERMS;
+use crate::expression::{Cursor, Fault, Grammar, Ident, Names, Outcome, Terms, keep};
 
 /// Letters P in a row: each asks for the value of the next.
 const INDIRECT_MAX: usize = 8;
@@ -12,14 +13,18 @@ const DIMENSIONS: usize = 4;
 /// The largest array that a declaration may fill.
 const ARRAY_MAX: usize = 10_000;
 
-impl Names for Reading<'_, '_, '_> {
-    fn style(&self) -> Style {
-        Style::Isg
+impl<'t> Names<'t> for Reading<'_, '_, 't> {
+    fn terms(&self) -> &'static Terms {
+        &TERMS
     }
 
-    fn variable(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<f64>> {
-        let start = cursor.at;
-        let Some(name) = self.variable_name(cursor)? else {
+    fn cursor(&mut self) -> &mut Cursor<'t> {
+        &mut self.cursor
+    }
+
+    fn variable(&mut self) -> Outcome<Option<f64>> {
+        let start = self.cursor.at;
+        let Some(name) = self.variable_name()? else {
             return Ok(None);
         };
         let Some(value) = self.value(&name) else {
@@ -31,9 +36,9 @@ impl Names for Reading<'_, '_, '_> {
             };
             let message = format!("{name} {reason}: what it holds, only the machine knows");
             let help = "give a P parameter or a V.P. variable its value in the program";
-            return Err(cursor.fault("unknown-value", message, help, start));
+            return Err(self.cursor.fault("unknown-value", message, help, start));
         };
-        self.uses.reads(name, cursor, start)?;
+        self.uses.reads(name, &self.cursor, start)?;
         Ok(Some(value))
     }
 }
@@ -41,64 +46,68 @@ impl Names for Reading<'_, '_, '_> {
 impl Reading<'_, '_, '_> {
     /// Takes the name of a variable with its indices, upper case but for what is
     /// free in it: `P10`, `P[10]` and `PP2` by their number, `V.P.NAME[1]`.
-    pub(super) fn variable_name(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<Ident>> {
-        cursor.peek();
-        let name = match (cursor.byte(0), cursor.byte(1)) {
+    pub(super) fn variable_name(&mut self) -> Outcome<Option<Ident>> {
+        self.cursor.peek();
+        let name = match (self.cursor.byte(0), self.cursor.byte(1)) {
             (b'P', b'0'..=b'9' | b'P' | b'[') => {
-                cursor.at += 1;
-                Ident::of(format_args!("P{}", self.index_of_p(cursor)?))
+                self.cursor.at += 1;
+                Ident::of(format_args!("P{}", self.index_of_p()?))
             }
-            (b'V', b'.') => free_name(cursor),
-            (b'@', b'P') => return parameter_name(cursor).map(Some),
+            (b'V', b'.') => free_name(&mut self.cursor),
+            (b'@', b'P') => return parameter_name(&mut self.cursor).map(Some),
             _ => return Ok(None),
         };
         let mut name = name;
         for _ in 0..DIMENSIONS {
-            if cursor.byte(0) != b'[' {
+            if self.cursor.byte(0) != b'[' {
                 break;
             }
-            cursor.at += 1;
-            let index = self.index(cursor)?;
-            cursor.expect(b']')?;
+            self.cursor.at += 1;
+            let index = self.index()?;
+            self.cursor.expect(b']')?;
             name = Ident::of(format_args!("{name}[{index}]"));
         }
         Ok(Some(name))
     }
 
     /// The number after P.
-    fn index_of_p(&mut self, cursor: &mut Cursor<'_>) -> Outcome<i64> {
-        match cursor.byte(0) {
+    fn index_of_p(&mut self) -> Outcome<i64> {
+        match self.cursor.byte(0) {
             b'[' => {
-                cursor.at += 1;
-                let index = self.index(cursor)?;
-                cursor.expect(b']')?;
+                self.cursor.at += 1;
+                let index = self.index()?;
+                self.cursor.expect(b']')?;
                 Ok(index)
             }
             // Indirect: the parameter whose number that one holds.
-            b'P' if (0..=INDIRECT_MAX).all(|at| cursor.byte(at) == b'P') => {
-                Err(not_an_index(cursor, f64::NAN, cursor.at))
+            b'P' if (0..=INDIRECT_MAX).all(|at| self.cursor.byte(at) == b'P') => {
+                Err(not_an_index(&self.cursor, f64::NAN, self.cursor.at))
             }
             b'P' => {
-                let start = cursor.at;
-                let value = self.variable(cursor)?.unwrap_or_default();
-                whole(value).ok_or_else(|| not_an_index(cursor, value, start))
+                let start = self.cursor.at;
+                let value = self.variable()?.unwrap_or_default();
+                whole(value).ok_or_else(|| not_an_index(&self.cursor, value, start))
             }
             _ => {
-                let start = cursor.at;
-                cursor.digits();
-                let text = cursor.text.get(start..cursor.at).unwrap_or_default();
+                let start = self.cursor.at;
+                self.cursor.digits();
+                let text = self
+                    .cursor
+                    .text
+                    .get(start..self.cursor.at)
+                    .unwrap_or_default();
                 let number = std::str::from_utf8(text)
                     .ok()
                     .and_then(|it| it.parse().ok());
-                number.ok_or_else(|| not_an_index(cursor, f64::NAN, start))
+                number.ok_or_else(|| not_an_index(&self.cursor, f64::NAN, start))
             }
         }
     }
 
-    fn index(&mut self, cursor: &mut Cursor<'_>) -> Outcome<i64> {
-        let start = cursor.at;
-        let value = expression(cursor, self)?;
-        whole(value).ok_or_else(|| not_an_index(cursor, value, start))
+    fn index(&mut self) -> Outcome<i64> {
+        let start = self.cursor.at;
+        let value = self.number()?;
+        whole(value).ok_or_else(|| not_an_index(&self.cursor, value, start))
     }
 
     fn value(&self, name: &str) -> Option<f64> {
@@ -134,11 +143,9 @@ impl Reading<'_, '_, '_> {
     /// begins.
     pub(super) fn assignment(&mut self) -> Outcome<bool> {
         let start = self.cursor.at;
-        let mut cursor = self.cursor.clone();
-        let Some(name) = self.variable_name(&mut cursor)? else {
+        let Some(name) = self.variable_name()? else {
             return Ok(false);
         };
-        self.cursor = cursor;
         let operator = self.cursor.peek().unwrap_or_default();
         let adds = matches!(operator, b'+' | b'-' | b'*' | b'/') && self.cursor.byte(1) == b'=';
         if !(adds || self.cursor.assigns()) {
@@ -207,10 +214,7 @@ impl Reading<'_, '_, '_> {
                 let help = "close the declaration by #ENDVAR";
                 return Err(self.cursor.fault("syntax", message, help, start));
             }
-            let mut cursor = self.cursor.clone();
-            let name = self.base_name(&mut cursor)?;
-            self.cursor = cursor;
-            let Some(name) = name else {
+            let Some(name) = self.base_name()? else {
                 self.cursor.at += 1;
                 let message = "a declaration needs a P parameter or a V. variable";
                 let help = "write V.P.NAME = 1";
@@ -223,13 +227,13 @@ impl Reading<'_, '_, '_> {
     }
 
     /// The name of a variable without its indices.
-    fn base_name(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<Ident>> {
-        Ok(match (cursor.byte(0), cursor.byte(1)) {
+    fn base_name(&mut self) -> Outcome<Option<Ident>> {
+        Ok(match (self.cursor.byte(0), self.cursor.byte(1)) {
             (b'P', b'0'..=b'9') => {
-                cursor.at += 1;
-                Some(Ident::of(format_args!("P{}", self.index_of_p(cursor)?)))
+                self.cursor.at += 1;
+                Some(Ident::of(format_args!("P{}", self.index_of_p()?)))
             }
-            (b'V', b'.') => Some(free_name(cursor)),
+            (b'V', b'.') => Some(free_name(&mut self.cursor)),
             _ => None,
         })
     }
@@ -334,7 +338,7 @@ fn whole(value: f64) -> Option<i64> {
     ((-1e6..=1e9).contains(&value) && value.fract() == 0.0).then_some(value as i64)
 }
 
-fn not_an_index(cursor: &Cursor<'_>, value: f64, start: usize) -> crate::expression::Fault {
+fn not_an_index(cursor: &Cursor<'_>, value: f64, start: usize) -> Fault {
     let message = format!("{value} is no index");
     let help = "indices are whole numbers";
     cursor.fault("array-index", message, help, start)

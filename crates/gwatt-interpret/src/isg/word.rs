@@ -2,7 +2,7 @@
 //! parameters", "Dwell time (G04), (#TIME)").
 
 use super::block::Reading;
-use crate::formula::{Outcome, expression};
+use crate::expression::{Grammar, Outcome};
 use crate::jump::Go;
 use gwatt_syntax::Block;
 
@@ -200,14 +200,6 @@ impl Reading<'_, '_, '_> {
                 .refused(&name, "a command to one axis or spindle", start));
         }
         Ok(())
-    }
-
-    /// An expression.
-    pub(super) fn number(&mut self) -> Outcome<f64> {
-        let mut cursor = self.cursor.clone();
-        let value = expression(&mut cursor, self);
-        self.cursor = cursor;
-        value
     }
 
     /// `LL NAME` and `L NAME` ("Local subroutines", "Global subroutines").

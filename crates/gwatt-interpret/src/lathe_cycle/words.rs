@@ -16,7 +16,7 @@ use crate::report::Report;
 use crate::vector::Vector;
 use gwatt_machine::units::MM_PER_INCH;
 use gwatt_machine::{ALL_AXES, AxisKind, AxisSet};
-use gwatt_motion::MoveKind;
+use gwatt_motion::{MoveKind, Step};
 use gwatt_syntax::source::Span;
 
 impl Control<'_> {
@@ -129,6 +129,23 @@ impl Control<'_> {
     }
 }
 
+/// Rapids of a cycle under compensation, in the steps from `first` on: `LinuxCNC` 2.9 takes the
+/// contour's end for their start at a corner, so that the tool may go there first.
+fn approaches_anyhow(run: &mut Run<'_, '_>, first: usize) {
+    let whole = run.whole();
+    let message = "how LinuxCNC approaches the contour under cutter compensation is not followed: the \
+                   rapids of G70 count at full speed and acceleration";
+    run.report.note_once("unknown-moves", message, whole);
+    for step in run.steps.iter_mut().skip(first) {
+        if let Step::Move(mv) = step
+            && mv.kind == MoveKind::Rapid
+        {
+            mv.unknown_start.insert(X);
+            mv.unknown_start.insert(Z);
+        }
+    }
+}
+
 /// Reports what is wrong about a cycle.
 fn fault(message: &str, span: Span, run: &mut Run<'_, '_>) {
     run.report
@@ -160,20 +177,21 @@ impl Interpreter<'_> {
             },
         };
         let control = &mut self.control;
-        control.cut(
-            &Cut {
-                to: cycle.start,
-                kind: CutKind::Rapid,
-            },
-            &mut run,
-        );
+        // Those of the contour's last block have had their turn.
+        run.words.groups = 0;
+        let approach = Cut {
+            to: cycle.start,
+            kind: CutKind::Rapid,
+        };
+        let first = run.steps.len();
+        control.compensated_cut(&approach, errors, &mut run);
         match super::passes::cuts(&cycle.cycle, reader.pieces, cycle.start) {
             Ok(cuts) => {
                 for cut in cuts {
                     if run.report.diagnostics.errors != errors {
                         return;
                     }
-                    control.cut(&cut, &mut run);
+                    control.compensated_cut(&cut, errors, &mut run);
                 }
             }
             Err(found) => {
@@ -181,10 +199,22 @@ impl Interpreter<'_> {
                 fault(found.message(), whole, &mut run);
             }
         }
+        if control.compensation.is_some() {
+            approaches_anyhow(&mut run, first);
+        }
     }
 }
 
 impl Control<'_> {
+    /// One move of a cycle, as compensation makes it run (G70).
+    fn compensated_cut(&mut self, cut: &Cut, errors: u64, run: &mut Run<'_, '_>) {
+        let before = run.steps.len();
+        self.cut(cut, run);
+        if self.compensation.is_some() {
+            self.compensate(run, before, errors);
+        }
+    }
+
     /// One move of a cycle.
     fn cut(&mut self, cut: &Cut, run: &mut Run<'_, '_>) {
         let unit = self.modal.mm_per_unit;

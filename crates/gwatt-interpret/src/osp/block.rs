@@ -3,7 +3,7 @@
 use super::Osp;
 use crate::control::Control;
 use crate::expression::Fault;
-use crate::formula::{Cursor, Lexis, Outcome, Uses, whole_value};
+use crate::expression::{Cursor, Grammar, Lexis, Outcome, Uses};
 use crate::jump::Go;
 use crate::macro_block::{Note, not_finite};
 use crate::own_state::OwnState;
@@ -56,7 +56,7 @@ impl Control<'_> {
             uses: Uses::default(),
             passive: false,
         };
-        whole_value(&mut Cursor::new(text, Lexis::Comments), &mut reading)
+        reading.whole()
     }
 }
 

@@ -9,11 +9,12 @@ mod block;
 pub(super) mod code;
 pub(super) mod codes;
 mod statement;
+mod terms;
 mod variable;
 
 pub(super) use codes::osp_code;
 
-use super::formula::Kept;
+use super::expression::Kept;
 use gwatt_syntax::Block;
 
 /// What a control of this language keeps besides the modal state.
@@ -58,7 +59,7 @@ impl Osp {
     /// Gives a common variable the value that the control has kept.
     pub(super) fn keep(&mut self, name: &str, value: f64) {
         self.common
-            .insert(super::formula::Ident::of(format_args!("{name}")), value);
+            .insert(super::expression::Ident::of(format_args!("{name}")), value);
     }
 
     /// Whether a line must be read here, though the scanner took it for plain

@@ -2,7 +2,7 @@
 //! "Mnemonic Codes").
 
 use super::block::Reading;
-use crate::formula::Outcome;
+use crate::expression::{Grammar, Outcome};
 use crate::jump::Go;
 use gwatt_syntax::Block;
 

@@ -1,7 +1,8 @@
 //! Variables ("User Task": common variables, local variables, system variables).
 
 use super::block::Reading;
-use crate::formula::{Cursor, Ident, Names, Outcome, Style, expression, keep};
+use super::terms::TERMS;
+use crate::expression::{Cursor, Grammar, Ident, Names, Outcome, Terms, keep};
 
 /// System variables that move nothing: drawings, barriers of chuck and tail
 /// stock, monitoring of load, outputs and messages.
@@ -16,14 +17,18 @@ enum Name {
     System(Ident),
 }
 
-impl Names for Reading<'_, '_> {
-    fn style(&self) -> Style {
-        Style::Osp
+impl<'t> Names<'t> for Reading<'_, 't> {
+    fn terms(&self) -> &'static Terms {
+        &TERMS
     }
 
-    fn variable(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<f64>> {
-        let start = cursor.at;
-        let Some(found) = self.variable_name(cursor)? else {
+    fn cursor(&mut self) -> &mut Cursor<'t> {
+        &mut self.cursor
+    }
+
+    fn variable(&mut self) -> Outcome<Option<f64>> {
+        let start = self.cursor.at;
+        let Some(found) = self.variable_name()? else {
             return Ok(None);
         };
         let (kept, name) = match found {
@@ -37,41 +42,41 @@ impl Names for Reading<'_, '_> {
                 "{name} has no value in this program: what it holds, only the control knows"
             );
             let help = "assign it before it is used";
-            return Err(cursor.fault("unknown-value", message, help, start));
+            return Err(self.cursor.fault("unknown-value", message, help, start));
         };
-        self.uses.reads(name, cursor, start)?;
+        self.uses.reads(name, &self.cursor, start)?;
         Ok(Some(value))
     }
 }
 
 impl Reading<'_, '_> {
     /// Takes the name of a variable with its index.
-    fn variable_name(&mut self, cursor: &mut Cursor<'_>) -> Outcome<Option<Name>> {
-        let name = cursor.name();
+    fn variable_name(&mut self) -> Outcome<Option<Name>> {
+        let name = self.cursor.name();
         let letters = name.bytes().take_while(u8::is_ascii_alphabetic).count();
         if letters == 0 {
             return Ok(None);
         }
-        cursor.at += name.len();
+        self.cursor.at += name.len();
         let number = name.get(letters..).unwrap_or_default();
         let common = matches!(name.get(..letters), Some("V" | "VC" | "VS"));
         if !name.starts_with('V') {
             if letters < 2 {
-                cursor.at -= name.len();
+                self.cursor.at -= name.len();
                 return Ok(None);
             }
             return Ok(Some(Name::Local(name)));
         }
         let mut full = name.clone();
-        if (number.is_empty() || !common) && cursor.peek() == Some(b'[') {
-            cursor.at += 1;
-            let start = cursor.at;
-            let index = expression(cursor, self)?;
-            cursor.expect(b']')?;
+        if (number.is_empty() || !common) && self.cursor.peek() == Some(b'[') {
+            self.cursor.at += 1;
+            let start = self.cursor.at;
+            let index = self.number()?;
+            self.cursor.expect(b']')?;
             if index.fract() != 0.0 || !(0.0..=1e6).contains(&index) {
                 let message = format!("{index} is no index");
                 let help = "indices are whole numbers";
-                return Err(cursor.fault("array-index", message, help, start));
+                return Err(self.cursor.fault("array-index", message, help, start));
             }
             full = if common {
                 Ident::of(format_args!("{name}{index}"))
@@ -90,11 +95,11 @@ impl Reading<'_, '_> {
     /// begins and `=` stands after it; false otherwise.
     pub(super) fn assignment(&mut self) -> Outcome<bool> {
         let start = self.cursor.at;
-        let mut cursor = self.cursor.clone();
-        let Some(name) = self.variable_name(&mut cursor)? else {
+        let Some(name) = self.variable_name()? else {
             return Ok(false);
         };
-        if !cursor.assigns() {
+        if !self.cursor.assigns() {
+            self.cursor.at = start;
             return Ok(false);
         }
         if matches!(&name, Name::Local(name) if name.as_str() == "HP") {
@@ -102,7 +107,6 @@ impl Reading<'_, '_> {
             let help = "write the way there as a rapid";
             return Err(self.cursor.fault("unsupported-word", message, help, start));
         }
-        self.cursor = cursor;
         let (text, local) = match name {
             Name::Common(name) => (name, false),
             Name::Local(name) => (name, true),
@@ -137,13 +141,5 @@ impl Reading<'_, '_> {
         };
         let Some(kept) = kept else { return Ok(()) };
         keep(kept, name, value, &self.cursor, start)
-    }
-
-    /// An expression.
-    pub(super) fn number(&mut self) -> Outcome<f64> {
-        let mut cursor = self.cursor.clone();
-        let value = expression(&mut cursor, self);
-        self.cursor = cursor;
-        value
     }
 }

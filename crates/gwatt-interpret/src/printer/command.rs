@@ -73,12 +73,18 @@ impl Control<'_> {
                 self.named(run, text, name, span, at);
                 return None;
             }
-            Head::Other => {
+            Head::Odd(name, span) if self.lists(name) => {
+                self.named(run, text, name, span, at);
+                return None;
+            }
+            Head::Odd(..) | Head::Other => {
                 self.not_a_command(run);
                 return None;
             }
         };
-        if Text::is_text(letter, number) {
+        // Bambu Lab's M1006 plays notes, with M among their letters.
+        let sounds = (letter, number) == (b'M', 10060) && self.passes(letter, number);
+        if sounds || Text::is_text(letter, number) {
             text_command(run, number);
             return None;
         }
@@ -139,7 +145,9 @@ impl Control<'_> {
     fn is_listed(&self, letter: u8, number: u16) -> bool {
         let printer = &self.machine.controller.language.printer;
         let listed = |list: &[Command]| list.iter().any(|one| one.is_code(letter, number));
-        self.passes(letter, number) || listed(&printer.unknown_moves) || listed(&printer.shifts)
+        let unknown = listed(&printer.unknown_moves) || listed(&printer.unknown_macros);
+        let ignored = self.passes(letter, number) || listed(&printer.ignored_macros);
+        ignored || unknown || listed(&printer.shifts) || listed(&printer.optional_part)
     }
 
     /// Whether the profile says that a word moves nothing. `M862.3` is one of
@@ -182,7 +190,7 @@ impl Control<'_> {
         let printer = &self.machine.controller.language.printer;
         let listed = |list: &[Command]| list.iter().any(|one| one.is_code(letter, number));
         let shifts = listed(&printer.shifts);
-        if self.passes(letter, number) {
+        if self.passes(letter, number) || listed(&printer.ignored_macros) {
             note_uncounted(run, letter, number, span);
             run.act(ActionKind::Other, action);
         } else if shifts {
@@ -198,6 +206,16 @@ impl Control<'_> {
                 // Whether it stays in force, firmwares see differently.
                 self.modal.feed = None;
             }
+        } else if listed(&printer.unknown_macros) {
+            self.unknown_macro(run, span);
+        } else if printer
+            .optional_part
+            .first()
+            .is_some_and(|one| one.is_code(letter, number))
+        {
+            self.begin_optional(run, span);
+        } else if listed(&printer.optional_part) {
+            self.end_optional(run, span);
         } else if letter == b'T' {
             self.tool(run, number, span);
         } else if !self.own_command(run, (letter, number, span), parameters) {

@@ -1,6 +1,7 @@
 //! Positions and states that a program keeps and comes back to.
 
 use super::line::{Parameters, has, value};
+use super::unstated::Unstated;
 use crate::control::{Control, Run};
 use crate::modal::Feed;
 use crate::places::EXTRUDER;
@@ -36,6 +37,7 @@ pub(super) struct SavedState {
     offsets: AxisValues,
     absolute: bool,
     extruder_absolute: bool,
+    unstated: Unstated,
     feed: Option<Feed>,
     feed_factor: f64,
     flow: f64,
@@ -143,6 +145,7 @@ impl Control<'_> {
             offsets: *self.position.shifts(),
             absolute: self.modal.absolute,
             extruder_absolute: self.printer.extruder_absolute,
+            unstated: self.printer.unstated,
             feed: self.modal.feed,
             feed_factor: self.printer.feed_factor,
             flow: self.printer.flow,
@@ -177,6 +180,7 @@ impl Control<'_> {
         self.position.unknown.0 |= saved.position.unknown.0;
         self.modal.absolute = saved.absolute;
         self.printer.extruder_absolute = saved.extruder_absolute;
+        self.printer.unstated = saved.unstated;
         self.extruder_mode(None);
         self.modal.feed = saved.feed;
         self.printer.feed_factor = saved.feed_factor;
@@ -210,8 +214,10 @@ impl Control<'_> {
         run.facts.boundary = true;
         self.modal.absolute = saved.absolute;
         self.printer.extruder_absolute = saved.extruder_absolute;
+        self.printer.unstated = saved.unstated;
         self.extruder_mode(None);
         self.modal.feed = saved.feed;
+        self.settle();
         run.act(ActionKind::Other, 121.0);
     }
 

@@ -23,6 +23,8 @@ pub(super) enum Head<'t> {
     Tool(Span),
     /// `BED_MESH_CALIBRATE`, `if`.
     Name(&'t [u8], Span),
+    /// `M9833`, `M620.11`: a word whose number no code of gwatt's own has.
+    Odd(&'t [u8], Span),
     /// Anything else.
     Other,
 }
@@ -177,12 +179,13 @@ impl<'t> Text<'t> {
             let end = self.number(digits);
             let span = Span::new(start, end);
             let begins = self.byte(digits).is_some_and(|byte| byte.is_ascii_digit());
-            if begins
-                && let Some(number) = self
-                    .read(digits, end)
-                    .and_then(super::super::g_codes::code_number)
-            {
-                return (Head::Code(letter, number, span), end);
+            let number = self.read(digits, end).filter(|_| begins);
+            if let Some(number) = number {
+                let name = self.line.get(start..end).unwrap_or_default();
+                let odd = Head::Odd(name, span);
+                let code = super::super::g_codes::code_number(number);
+                let head = code.map_or(odd, |number| Head::Code(letter, number, span));
+                return (head, end);
             }
         }
         let mut end = start;

@@ -13,12 +13,14 @@ mod heat;
 mod kept;
 mod line;
 mod named;
+mod optional;
 mod position;
 mod retract;
 mod scale;
 mod settings;
 #[cfg(test)]
 mod testing;
+mod unstated;
 
 use crate::rules::rules_of;
 use std::collections::BTreeMap;
@@ -30,6 +32,8 @@ use super::report::Report;
 use gwatt_machine::{AXES, AxisSet, AxisValues, Controller, Machine, Retract};
 use gwatt_syntax::{Block, Word};
 use kept::{SavedPosition, SavedState};
+use optional::Before;
+use unstated::Unstated;
 
 /// What a printer keeps from line to line, besides what every controller does.
 #[derive(Debug)]
@@ -38,6 +42,8 @@ pub(super) struct State {
     pub(super) adjusts: bool,
     /// M82 (true) or M83.
     extruder_absolute: bool,
+    /// Modes that a macro may have changed.
+    unstated: Unstated,
     /// M220, as a factor, and what M220 B has put by.
     feed_factor: f64,
     kept_feed_factor: f64,
@@ -68,6 +74,8 @@ pub(super) struct State {
     several_tools: bool,
     /// G60.
     positions: Vec<(u32, SavedPosition)>,
+    /// Before each part that is open and may be left out.
+    optional: Vec<Before>,
     /// `SAVE_GCODE_STATE`, M120.
     states: BTreeMap<Vec<u8>, SavedState>,
 }
@@ -78,6 +86,7 @@ impl State {
         Self {
             adjusts: false,
             extruder_absolute: true,
+            unstated: Unstated::default(),
             feed_factor: 1.0,
             kept_feed_factor: 1.0,
             flow: 1.0,
@@ -95,6 +104,7 @@ impl State {
             maybe_lit: 0,
             several_tools: false,
             positions: Vec::new(),
+            optional: Vec::new(),
             states: BTreeMap::new(),
         }
     }

@@ -54,25 +54,42 @@ impl Control<'_> {
         } else if shifts {
             self.shift_axes(&Parameters::new());
             run.act(ActionKind::Other, 0.0);
+        } else if listed(&printer.unknown_macros) && !self.has_file(name) {
+            self.unknown_macro(run, span);
         } else if !(printer.velocity_limit && self.klipper(run, text, upper, span, at)) {
             self.macro_file(run, name, span);
         }
     }
 
+    /// Whether the profile or the machine file says what a command of this name does.
+    pub(super) fn lists(&self, name: &[u8]) -> bool {
+        let printer = &self.machine.controller.language.printer;
+        let lists = [
+            &printer.ignored_macros,
+            &printer.unknown_moves,
+            &printer.unknown_macros,
+        ];
+        lists.into_iter().flatten().any(|one| one.is_macro(name))
+    }
+
     /// A name that the profile does not know: what its file says, if there is one.
     fn macro_file(&mut self, run: &mut Run<'_, '_>, name: &[u8], span: Span) {
-        let plain = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
-        let name = String::from_utf8_lossy(name).to_ascii_uppercase();
-        let files = library::macro_files(&name);
-        if name.as_bytes().iter().all(plain)
-            && !is_meta(name.as_bytes())
-            && library::find_named(&self.printer.sub_paths, &files).is_some()
-        {
+        if self.has_file(name) {
+            let name = String::from_utf8_lossy(name).to_ascii_uppercase();
             self.transfer = Some(Transfer::Macro(name));
             run.facts.transfers = true;
         } else {
-            refuse_name(run, name.as_bytes(), span);
+            refuse_name(run, &name.to_ascii_uppercase(), span);
         }
+    }
+
+    /// Whether a file says what the macro of this name does.
+    fn has_file(&self, name: &[u8]) -> bool {
+        let plain = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+        let files = library::macro_files(&String::from_utf8_lossy(name).to_ascii_uppercase());
+        name.iter().all(plain)
+            && !is_meta(name)
+            && library::find_named(&self.printer.sub_paths, &files).is_some()
     }
 
     /// Klipper's commands that set something; false for others.
@@ -195,6 +212,6 @@ fn refuse_name(run: &mut Run<'_, '_>, name: &[u8], span: Span) {
         "write what it comes to into a file {shown}.gcode in the program's folder or one given by \
          --sub-path; or in the machine file, under [language], list it in `ignored_macros` if it \
          moves nothing and sets nothing, or in `unknown_moves` if it moves and leaves feed and \
-         modes as they are"
+         modes as they are, or in `unknown_macros` if nothing is known of it"
     ));
 }

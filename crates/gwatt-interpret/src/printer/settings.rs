@@ -25,6 +25,7 @@ impl Control<'_> {
         state.adjusts = state.feed_factor != 1.0
             || state.flow * state.volumetric != 1.0
             || state.least_mm_s != [0.0; 2]
+            || state.unstated.any()
             || self.knobs.limits_speed();
     }
 
@@ -343,7 +344,7 @@ impl Control<'_> {
         self.take_square((square != own).then_some(square));
     }
 
-    fn take_square(&mut self, square: Option<Square>) {
+    pub(super) fn take_square(&mut self, square: Option<Square>) {
         if self.knobs.square != square {
             self.knobs.square = square;
             self.modal.corner = square.map_or_else(Corner::default, Corner::Square);

@@ -3,7 +3,7 @@
 
 use super::reading::Reading;
 use super::value::Val;
-use crate::formula::Outcome;
+use crate::expression::{Grammar, Outcome};
 use gwatt_machine::AxisId;
 use gwatt_syntax::Block;
 

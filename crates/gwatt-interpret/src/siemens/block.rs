@@ -17,7 +17,7 @@ use gwatt_motion::{ActionKind, FeedMode, Step};
 use gwatt_syntax::Block;
 
 use super::reading::Reading;
-use crate::formula::{Cursor, Lexis};
+use crate::expression::{Cursor, Grammar, Lexis};
 
 impl Control<'_> {
     /// Reads a block that is more than plain words. True when the program does
@@ -72,8 +72,7 @@ impl Control<'_> {
             cursor: Cursor::new(text, Lexis::Sinumerik),
             notes: Vec::new(),
         };
-        let value = reading.number().ok();
-        let value = value.filter(|_| reading.cursor.peek().is_none());
+        let value = reading.whole();
         self.own = OwnState::Siemens(state);
         value
     }

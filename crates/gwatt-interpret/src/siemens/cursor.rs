@@ -1,6 +1,6 @@
 //! What only this language has in its text: quotes, and parentheses that nest.
 
-use crate::formula::{Cursor, Outcome};
+use crate::expression::{Cursor, Outcome};
 
 impl Cursor<'_> {
     /// A text in quotes, without them.

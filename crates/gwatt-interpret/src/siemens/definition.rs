@@ -7,7 +7,7 @@
 use super::reading::Reading;
 use super::saved::Saved;
 use super::value::{COUNT_MAX, Kind, Scope, Val, Variable};
-use crate::formula::Outcome;
+use crate::expression::{Grammar, Outcome};
 
 /// Dimensions of something that is no array.
 const SINGLE: [usize; 3] = [1; 3];
@@ -87,7 +87,7 @@ impl Reading<'_, '_, '_> {
         Ok(())
     }
 
-    fn cannot(&self, name: &str, reason: &str, start: usize) -> super::super::expression::Fault {
+    fn cannot(&self, name: &str, reason: &str, start: usize) -> crate::expression::Fault {
         let message = format!("{name} cannot take this value: {reason}");
         let help = "define it by DEF with the type that it needs";
         self.cursor.fault("assignment", message, help, start)

@@ -7,7 +7,7 @@
 use super::reading::Reading;
 use super::value::{Argument, Val};
 use super::{Called, ModalCall, cycle};
-use crate::formula::Outcome;
+use crate::expression::{Grammar, Outcome};
 use crate::jump::{Direction, Siemens as Go};
 
 /// Repetitions that one word may ask for.
@@ -312,7 +312,7 @@ impl Reading<'_, '_, '_> {
             let mut values = Vec::new();
             for argument in arguments {
                 values.push(match argument {
-                    Some(argument) => Some(self.as_number(&argument.value, start)?),
+                    Some(argument) => Some(self.number_of(&argument.value, start)?),
                     None => None,
                 });
             }

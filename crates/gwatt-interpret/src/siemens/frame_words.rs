@@ -9,7 +9,7 @@
 use super::frame::{Frame, SPACE};
 use super::reading::Reading;
 use super::{Siemens, frame};
-use crate::formula::Outcome;
+use crate::expression::{Grammar, Outcome};
 use gwatt_machine::{AXES, AxisId, AxisSet, AxisValues};
 
 /// What is said where tool lengths would matter.

@@ -9,7 +9,7 @@
 use super::reading::Reading;
 use super::value::Val;
 use crate::control::Control;
-use crate::formula::Outcome;
+use crate::expression::{Grammar, Outcome};
 use gwatt_machine::{AXES, AxisValues, Machine};
 
 /// Largest percentage of ACC, OVRRAP and JERKLIM.

@@ -20,7 +20,7 @@ mod expression;
 mod flow_words;
 mod frame;
 mod frame_words;
-mod function;
+mod terms;
 mod limits;
 mod names;
 mod pattern;

@@ -10,7 +10,7 @@ use super::{Siemens, frame_words};
 use crate::code::GCode;
 use crate::compensation::{Choice, ContourFeed};
 use crate::control::{Control, Run};
-use crate::formula::Outcome;
+use crate::expression::{Grammar, Outcome};
 
 use super::code::Code;
 

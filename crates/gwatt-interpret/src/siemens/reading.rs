@@ -3,7 +3,7 @@
 use super::value::{COUNT_MAX, Kind, Val};
 use super::{Extra, Siemens};
 use crate::control::Control;
-use crate::formula::{Cursor, Outcome};
+use crate::expression::{Cursor, Grammar, Outcome};
 use gwatt_syntax::source::Span;
 
 /// Highest R parameter that a control can have.
@@ -72,7 +72,7 @@ impl Reading<'_, '_, '_> {
         Err(self.cursor.fault("unknown-value", message, help, start))
     }
 
-    fn outside(&self, name: &str, start: usize) -> super::super::expression::Fault {
+    fn outside(&self, name: &str, start: usize) -> crate::expression::Fault {
         let message = format!("an index of {name} is outside its array");
         let help = "indices count from 0 to one less than the length";
         self.cursor.fault("array-index", message, help, start)

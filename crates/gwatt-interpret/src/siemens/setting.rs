@@ -2,7 +2,7 @@
 
 use super::reading::Reading;
 use crate::compensation::Insert;
-use crate::formula::Outcome;
+use crate::expression::{Grammar, Outcome};
 use crate::level_words::named;
 use gwatt_syntax::Block;
 

@@ -7,7 +7,7 @@ use super::names::Name;
 use super::reading::Reading;
 use super::value::{Kind, Val};
 use super::{Measure, frame_words};
-use crate::formula::Outcome;
+use crate::expression::{Grammar, Outcome};
 use crate::jump::Siemens as Go;
 use gwatt_machine::AxisId;
 use gwatt_syntax::{Block, Word};

@@ -5,7 +5,7 @@
 
 use super::reading::Reading;
 use super::value::Val;
-use crate::formula::Outcome;
+use crate::expression::Outcome;
 use gwatt_machine::AxisId;
 
 impl Reading<'_, '_, '_> {

@@ -3,6 +3,7 @@
 //! "Flexible NC programming", "Variables" and "Definition of user variables":
 //! DEF with a type, arrays of up to three dimensions, R parameters.
 
+use crate::expression::truth;
 use std::collections::HashMap;
 
 /// Variables, and elements of one array, that a program may have.
@@ -65,7 +66,7 @@ impl Kind {
             (Self::Text, Val::Number(_)) => Err("a number is no text"),
             (_, Val::Text(_)) => Err("a text is no number"),
             (Self::Real, number) => Ok(number),
-            (Self::Bool, Val::Number(value)) => Ok(truth(value != 0.0)),
+            (Self::Bool, Val::Number(value)) => Ok(Val::Number(truth(value != 0.0))),
             (Self::Int | Self::Char, Val::Number(value)) => {
                 let rounded = (value + 0.5).floor();
                 if rounded.abs() <= 2_147_483_648.0 {
@@ -76,11 +77,6 @@ impl Kind {
             }
         }
     }
-}
-
-/// 1 or 0.
-pub(super) fn truth(yes: bool) -> Val {
-    Val::Number(f64::from(u8::from(yes)))
 }
 
 /// A variable, or an array of them.

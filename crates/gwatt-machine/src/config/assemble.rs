@@ -5,8 +5,8 @@ use super::machine_file::{LimitsTable, MachineFile, PathTable};
 use super::path_name::{path_mode, rapid_path};
 use super::value::{Num, Number, PerAxis};
 use super::{
-    axis, converter, drive_curve, levels, look_ahead, offsets, outputs, own_language, parts,
-    path_accel, plausible, preset, response, servo, spindle, switched_load, tool,
+    axis, converter, drive_curve, kinematics, levels, look_ahead, offsets, outputs, own_language,
+    parts, path_accel, plausible, preset, response, servo, spindle, switched_load, tool,
 };
 use crate::MassPart;
 use crate::axis::{AXES, Axis, AxisId, AxisSet};
@@ -39,13 +39,7 @@ pub(crate) fn machine(
     if let Some(table) = &file.outputs {
         outputs::take(findings, table, &mut controller);
     }
-    let errors = file
-        .limits
-        .as_ref()
-        .map_or_else(axis::Errors::default, |table| axis::Errors {
-            mass: table.value.mass_error.as_ref(),
-            friction: table.value.friction_error.as_ref(),
-        });
+    let errors = errors(file);
     let AxisTables {
         mut axes,
         axis_set,
@@ -84,8 +78,12 @@ pub(crate) fn machine(
         .as_ref()
         .and_then(|table| spindle::spindle(findings, table, &converters, &controller));
     let tools = tool::tools(findings, file);
+    let offsets = file.offsets.as_ref().map(|table| &table.value);
+    let (offsets, points) = offsets::all(findings, offsets, axis_set, &controller);
+    let kinematics = kinematics::take(findings, file, &axes, &force_curves, &converters);
     let machine = Machine {
         name: file.name.as_ref()?.value.clone(),
+        kinematics,
         path,
         controller,
         axes,
@@ -97,14 +95,22 @@ pub(crate) fn machine(
         spindle,
         tools,
         loads,
-        offsets: file.offsets.as_ref().map_or([None; 9], |table| {
-            offsets::offsets(findings, &table.value, axis_set)
-        }),
+        offsets,
+        points,
         presets: preset::presets(findings, file, &axes, axis_set),
         limits,
     };
     // With an axis left out the machine would look weaker than it is.
     complete.then_some(machine)
+}
+
+/// How far masses and friction may be off.
+fn errors(file: &MachineFile) -> axis::Errors<'_> {
+    let table = file.limits.as_ref().map(|table| &table.value);
+    table.map_or_else(axis::Errors::default, |table| axis::Errors {
+        mass: table.mass_error.as_ref(),
+        friction: table.friction_error.as_ref(),
+    })
 }
 
 /// What the tables of the axes say.

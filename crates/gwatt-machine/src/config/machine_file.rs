@@ -42,6 +42,8 @@ pub(crate) struct MachineFile {
     /// The converter; several as `[[converter]]`, each with `name` and `axes`.
     #[schemars(required)]
     pub(crate) converter: Option<OneOrMany<ConverterTable>>,
+    /// Whether each axis has a motor of its own; default "cartesian".
+    pub(crate) kinematics: Option<At<KinematicsName>>,
     /// How the path is followed.
     pub(crate) path: Option<At<PathTable>>,
     /// How corners are run through, where that is not as in the controller profile.
@@ -67,6 +69,18 @@ pub(crate) struct MachineFile {
     pub(crate) levels: Option<Vec<At<LevelsTable>>>,
     /// Margin, overrides and floors.
     pub(crate) limits: Option<At<LimitsTable>>,
+}
+
+/// Which motors move which axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum KinematicsName {
+    /// Each axis has its own.
+    Cartesian,
+    /// Two motors move X and Y together: their powers count by the robust bound.
+    Corexy,
+    /// The same with X and Z.
+    Corexz,
 }
 
 /// The converter (power supply) of the drives.
@@ -214,6 +228,9 @@ pub(crate) struct OwnLanguageTable {
     /// axis counts at its full speed and acceleration, and its place is not known
     /// afterwards. They must leave feed and modes as they are.
     pub(crate) unknown_moves: Option<Vec<At<String>>>,
+    /// Macros of a printer of which nothing is known, besides those of the profile: they may
+    /// move, heat, and leave another feed and other modes and limits.
+    pub(crate) unknown_macros: Option<Vec<At<String>>>,
 }
 
 /// What an arc without a centre and a radius is.

@@ -15,6 +15,7 @@ mod document;
 mod drive_curve;
 mod findings;
 mod hints;
+mod kinematics;
 mod level_words;
 mod levels;
 mod load;

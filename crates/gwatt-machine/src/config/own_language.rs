@@ -59,6 +59,7 @@ pub(crate) fn take(
     for (field, list) in [
         ("ignored_macros", &own.ignored_macros),
         ("unknown_moves", &own.unknown_moves),
+        ("unknown_macros", &own.unknown_macros),
     ] {
         if list.is_some() && !language.family.facts().printer {
             let message = format!("`{field}` belongs to the controllers of printers");
@@ -74,9 +75,14 @@ pub(crate) fn take(
     }
     let printer = &mut language.printer;
     let ignored = printer::commands(findings, own.ignored_macros.as_ref());
-    printer.ignored_macros.extend(ignored);
     let moves = printer::commands(findings, own.unknown_moves.as_ref());
     // Macros, whatever their names: nobody says what they switch.
     printer.may_heat.extend(moves.iter().cloned());
+    let macros = printer::commands(findings, own.unknown_macros.as_ref());
+    // This machine's macro stands in place of the firmware's command of its name.
+    printer.ignored_macros.retain(|one| !macros.contains(one));
+    printer.unknown_moves.retain(|one| !macros.contains(one));
+    printer.ignored_macros.extend(ignored);
     printer.unknown_moves.extend(moves);
+    printer.unknown_macros.extend(macros);
 }

@@ -62,6 +62,8 @@ pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> 
         ignored_macros: commands(findings, table.ignored_macros.as_ref()),
         unknown_moves: commands(findings, table.unknown_moves.as_ref()),
         may_heat: commands(findings, table.may_heat.as_ref()),
+        unknown_macros: commands(findings, table.unknown_macros.as_ref()),
+        optional_part: commands(findings, table.optional_part.as_ref()),
         shifts: commands(findings, table.shifts.as_ref()),
     }
 }
@@ -104,9 +106,11 @@ pub(crate) fn commands(
             && stem
                 .bytes()
                 .all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+        // A word with a number that no code has: `M9833`, `M620.11`.
+        let odd = word::parse(&name).is_some();
         if let Some((letter, number)) = word::code(&name) {
             commands.push(Command::Code(letter, number));
-        } else if !fine {
+        } else if !fine && !odd {
             let message = format!("\"{}\" is not a command", text.value);
             let help = Some("a word such as \"G29\", or a name such as \"BED_MESH_*\"".to_owned());
             findings.error("machine-word", &text.span, message, help);

@@ -37,7 +37,7 @@ pub(crate) struct PrinterTable {
     pub(crate) retract: Option<At<RetractTable>>,
     /// Letters that make a G0 or G1 end at an endstop; default none.
     pub(crate) endstop_letters: Option<Vec<At<String>>>,
-    /// Extended commands that certainly move nothing; `*` at the end stands for
+    /// Commands that certainly move nothing; `*` at the end of a name stands for
     /// anything.
     pub(crate) ignored_macros: Option<Vec<At<String>>>,
     /// Commands whose moves are not known: every axis counts at its full speed
@@ -47,6 +47,13 @@ pub(crate) struct PrinterTable {
     /// Those of `unknown_moves`, and tools, that may switch heaters and fans too, as a
     /// macro or a file of the machine does. `unknown_moves` of a machine file all may.
     pub(crate) may_heat: Option<Vec<At<String>>>,
+    /// Commands that are macros of the machine, of which nothing is known: they may move,
+    /// heat, and leave another feed and other modes and limits. A file of that name in the
+    /// program's folder or one given by `--sub-path` says what one does.
+    pub(crate) unknown_macros: Option<Vec<At<String>>>,
+    /// Words before and after a part that the machine may leave out, as a condition of its
+    /// own decides (Bambu Lab's M622 and M623); default none.
+    pub(crate) optional_part: Option<Vec<At<String>>>,
     /// Commands that shift the coordinates: the next move of an axis counts at
     /// full speed and acceleration.
     pub(crate) shifts: Option<Vec<At<String>>>,

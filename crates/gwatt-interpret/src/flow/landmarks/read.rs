@@ -1,42 +1,57 @@
-//! How the landmarks of a text are found.
+//! How the landmarks of texts of the ISG kernel and of OSP are found.
 
-use super::{ENDS, Landmarks, Open, Part, Program, Rest, close_inside};
+use super::rest::Rest;
+use super::{Landmarks, Survey};
 use crate::flow::text::Text;
 
+/// What ends each structure of the ISG kernel.
+const ENDS: [(&str, &str); 6] = [
+    ("IF", "ENDIF"),
+    ("WHILE", "ENDWHILE"),
+    ("FOR", "ENDFOR"),
+    ("DO", "ENDDO"),
+    ("REPEAT", "UNTIL"),
+    ("SWITCH", "ENDSWITCH"),
+];
+
 impl Landmarks {
-    pub(crate) fn new(text: &Text, dollar: bool) -> Self {
-        let mut marks = Self::default();
-        let mut open = Vec::new();
-        let mut comments = false;
+    pub(in crate::flow) fn of_isg(text: &Text) -> Self {
+        let mut survey = Survey::default();
         for line in 0..text.len() {
-            if dollar {
-                marks.dollar_line(line, text.line(line), &mut open, &mut comments);
-            } else {
-                marks.osp_line(line, text.line(line));
-            }
+            survey.isg_line(line, text.line(line));
         }
-        marks
+        survey.marks
     }
 
-    fn dollar_line(&mut self, line: usize, text: &[u8], open: &mut Vec<Open>, comments: &mut bool) {
+    pub(in crate::flow) fn of_osp(text: &Text) -> Self {
+        let mut survey = Survey::default();
+        for line in 0..text.len() {
+            survey.osp_line(line, text.line(line));
+        }
+        survey.marks
+    }
+}
+
+impl Survey {
+    fn isg_line(&mut self, line: usize, text: &[u8]) {
         let upper = text.to_ascii_uppercase();
-        if *comments {
-            *comments = memchr::memmem::find(&upper, b"#COMMENT END").is_none();
+        if self.comments {
+            self.comments = memchr::memmem::find(&upper, b"#COMMENT END").is_none();
             return;
         }
         let mut rest = Rest(text.trim_ascii_start());
         if rest.0.starts_with(b"%") {
-            open.clear();
+            self.open.clear();
             let local = crate::isg::is_local(rest.0);
             rest.skip(1);
             if local {
                 rest.skip(1);
             }
             let name = rest.run(|byte| !matches!(byte, b' ' | b'\t' | b'(' | b';'));
-            self.program_head(line, name, local);
+            self.program(line, name, !local);
             return;
         }
-        if let Some(number) = rest.front() {
+        if let Some(number) = front(&mut rest) {
             self.label(number, line);
         }
         if rest.0.starts_with(b"[")
@@ -51,32 +66,21 @@ impl Landmarks {
         if rest.0.starts_with(b"$") {
             rest.skip(1);
             let word = rest.run(u8::is_ascii_alphabetic);
-            self.structure(line, &word, &rest, open);
+            self.isg_structure(line, &word, &rest);
         } else if let Some(begin) = memchr::memmem::find(&upper, b"#COMMENT BEGIN") {
             let after = upper.get(begin..).unwrap_or_default();
-            *comments = memchr::memmem::find(after, b"#COMMENT END").is_none();
+            self.comments = memchr::memmem::find(after, b"#COMMENT END").is_none();
         }
     }
 
-    fn program_head(&mut self, line: usize, name: String, local: bool) {
-        self.programs.push(Program { line, local });
-        if local {
-            self.subs.entry(name).or_insert(line);
-        }
-    }
-
-    fn label(&mut self, name: String, line: usize) {
-        self.labels.entry(name).or_default().push(line);
-    }
-
-    fn structure(&mut self, line: usize, word: &str, rest: &Rest<'_>, open: &mut Vec<Open>) {
+    fn isg_structure(&mut self, line: usize, word: &str, rest: &Rest<'_>) {
         let jumps = || memchr::memmem::find(&rest.0.to_ascii_uppercase(), b"$GOTO").is_some();
         match word {
             "BREAK" | "CONTINUE" => {
-                let around = open
-                    .iter_mut()
-                    .rev()
-                    .find(|open| open.kind != "IF" && (word == "BREAK" || open.kind != "SWITCH"));
+                let around =
+                    self.open.iter_mut().rev().find(|open| {
+                        open.kind != "IF" && (word == "BREAK" || open.kind != "SWITCH")
+                    });
                 if let Some(open) = around {
                     open.leaves.push(line);
                 }
@@ -87,57 +91,19 @@ impl Landmarks {
                 } else {
                     "SWITCH"
                 };
-                close_inside(open, kind);
-                if let Some(open) = open.last_mut() {
+                self.close_inside(kind);
+                if let Some(open) = self.open.last_mut() {
                     open.parts.push((line, matches!(word, "ELSEIF" | "CASE")));
                 }
             }
             "IF" if jumps() => {}
             _ => {
                 if let Some((kind, _)) = ENDS.iter().find(|(begin, _)| *begin == word) {
-                    open.push(Open {
-                        kind,
-                        begin: line,
-                        parts: vec![(line, false)],
-                        leaves: Vec::new(),
-                    });
+                    self.begin(kind, line);
                 } else if let Some((kind, _)) = ENDS.iter().find(|(_, end)| *end == word) {
-                    close_inside(open, kind);
-                    if let Some(structure) = open.pop() {
-                        self.close(line, &structure);
-                    }
+                    self.end(kind, line);
                 }
             }
-        }
-    }
-
-    fn close(&mut self, end: usize, open: &Open) {
-        let counts = open.kind == "FOR";
-        let lines = open.parts.iter().copied().chain([(end, false)]);
-        let mut next = None;
-        for (line, decides) in lines.rev() {
-            let (next_line, next_decides) = next.unwrap_or((end, false));
-            self.parts.insert(
-                line,
-                Part {
-                    begin: open.begin,
-                    end,
-                    next: next_line,
-                    next_decides,
-                    around: None,
-                    counts,
-                },
-            );
-            next = Some((line, decides));
-        }
-        for &line in &open.leaves {
-            let part = Part {
-                begin: open.begin,
-                end,
-                around: Some(end),
-                ..Part::default()
-            };
-            self.parts.insert(line, part);
         }
     }
 
@@ -145,13 +111,10 @@ impl Landmarks {
     fn osp_line(&mut self, line: usize, text: &[u8]) {
         let mut rest = Rest(text);
         rest.skip(0);
-        if rest.0.starts_with(b"/") {
-            rest.skip(1);
-            rest.digits();
-        }
+        rest.block_delete();
         let name = rest.run(u8::is_ascii_alphanumeric);
         match name.as_bytes() {
-            [b'O', _, ..] => self.program_head(line, name, true),
+            [b'O', _, ..] => self.program(line, name, false),
             [b'N', _, ..] => {
                 // `N0010` and `N10` are one number.
                 let digits = name.get(1..).unwrap_or_default();
@@ -164,36 +127,22 @@ impl Landmarks {
             _ => {}
         }
     }
+}
 
-    /// The line where the main program begins: the first `%` line without L.
-    pub(crate) fn main(&self) -> Option<usize> {
-        let main = self.programs.iter().find(|program| !program.local);
-        main.map(|program| program.line)
+/// Passes over block delete and block number; gives the number as `N10`.
+fn front(rest: &mut Rest<'_>) -> Option<String> {
+    rest.byte_order_mark();
+    let mut number = None;
+    for _ in 0..2 {
+        rest.skip(0);
+        rest.comment();
+        rest.block_delete();
+        if number.is_none() {
+            number = rest.block_number(b"Nn");
+            if number.is_some() && rest.0.starts_with(b":") {
+                rest.skip(1);
+            }
+        }
     }
-
-    /// The line of a subprogram's head.
-    pub(crate) fn program(&self, name: &str) -> Option<usize> {
-        self.subs.get(&name.to_ascii_uppercase()).copied()
-    }
-
-    /// The line of a label in the program that `line` belongs to: the next one,
-    /// else the first.
-    pub(crate) fn find(&self, label: &str, line: usize, len: usize) -> Option<usize> {
-        let next = self
-            .programs
-            .partition_point(|program| program.line <= line);
-        let begin = next.checked_sub(1).and_then(|at| self.programs.get(at));
-        let begin = begin.map_or(0, |program| program.line);
-        let end = self.programs.get(next).map_or(len, |program| program.line);
-        let lines = self.labels.get(label)?;
-        let from = |line: usize| {
-            let next = lines.partition_point(|found| *found < line);
-            lines.get(next).copied().filter(|found| *found < end)
-        };
-        from(line + 1).or_else(|| from(begin))
-    }
-
-    pub(crate) fn part(&self, line: usize) -> Option<Part> {
-        self.parts.get(&line).copied()
-    }
+    number
 }

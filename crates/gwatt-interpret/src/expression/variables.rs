@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::cursor::{Cursor, Outcome};
+use super::cursor::Cursor;
+use super::fault::{Fault, Outcome};
 use super::ident::Ident;
-use crate::expression::Fault;
 
 /// Variables that a program may keep.
 const COUNT_MAX: usize = 100_000;

@@ -1,12 +1,10 @@
 //! A place in the text of a block, which moves on as the text is understood.
 
+use super::fault::{Fault, Outcome};
 use super::ident::Ident;
-use crate::expression::Fault;
 use gwatt_syntax::diagnostic::excerpt;
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, Word};
-
-pub(crate) type Outcome<T> = Result<T, Fault>;
 
 /// Most words of a block.
 const WORDS_MAX: usize = 256;
@@ -16,6 +14,8 @@ const WORDS_MAX: usize = 256;
 pub(crate) enum Lexis {
     /// `( … )` is a comment.
     Comments,
+    /// RS274/NGC and Fanuc: the same, and blanks may stand in a name.
+    Blanks,
     /// SINUMERIK: `( … )` belongs to expressions, names also begin with `$` or
     /// `_`, and `EX` stands before the exponent of a number.
     Sinumerik,
@@ -41,17 +41,21 @@ impl<'t> Cursor<'t> {
         }
     }
 
-    /// The next byte after blanks and comments; it stays. `None` at the end.
+    /// The next byte after blanks and comments, upper case; it stays. `None` at the end.
     pub(crate) fn peek(&mut self) -> Option<u8> {
         loop {
             match self.text.get(self.at)? {
                 b' ' | b'\t' => self.at += 1,
                 b';' => return None,
-                b'(' if self.lexis == Lexis::Comments => {
+                b'(' if self.lexis != Lexis::Sinumerik => {
                     let rest = self.text.get(self.at..)?;
-                    self.at += memchr::memchr(b')', rest).map_or(rest.len(), |end| end + 1);
+                    self.at += match memchr::memchr(b')', rest) {
+                        Some(end) => end + 1,
+                        None if self.lexis == Lexis::Blanks => return None,
+                        None => rest.len(),
+                    };
                 }
-                byte => return Some(*byte),
+                byte => return Some(byte.to_ascii_uppercase()),
             }
         }
     }
@@ -135,7 +139,13 @@ impl<'t> Cursor<'t> {
             digits.push('e');
             digits.push_str(&self.since(from));
         }
-        let value = digits.parse::<f64>().ok();
+        self.parsed(digits.as_bytes(), start)
+    }
+
+    /// The number that `digits` are, which were taken from `start` on.
+    pub(super) fn parsed(&self, digits: &[u8], start: usize) -> Outcome<f64> {
+        let value = std::str::from_utf8(digits).ok();
+        let value = value.and_then(|digits| digits.parse::<f64>().ok());
         if let Some(value) = value.filter(|value| value.is_finite()) {
             return Ok(value);
         }
@@ -215,6 +225,16 @@ impl<'t> Cursor<'t> {
         self.fault("expression", format!("`{what}` is missing here"), help, at)
     }
 
+    /// A result, or the fault of what stands from `start` to the place.
+    pub(crate) fn worked_out(
+        &self,
+        result: Result<f64, &'static str>,
+        start: usize,
+    ) -> Outcome<f64> {
+        let help = "check the values that go into it";
+        result.map_err(|wrong| self.fault("arithmetic", wrong, help, start))
+    }
+
     /// A fault of what stands from `start` to the place.
     pub(crate) fn fault(
         &self,
@@ -244,7 +264,11 @@ impl<'t> Cursor<'t> {
 
     /// What stands from `start` to the place; a byte at least.
     pub(crate) fn span(&self, start: usize) -> Span {
-        let end = self.end().max(start + 1).min(self.text.len());
+        let place = match self.lexis {
+            Lexis::Blanks => self.at,
+            _ => self.end(),
+        };
+        let end = place.max(start + 1).min(self.text.len());
         Span::new(start.min(end), end)
     }
 
@@ -257,7 +281,7 @@ impl<'t> Cursor<'t> {
 
 /// A number of so few digits that a division of whole numbers gives it exactly as
 /// the nearest one.
-fn exact_decimal(text: &[u8]) -> Option<f64> {
+pub(super) fn exact_decimal(text: &[u8]) -> Option<f64> {
     let (mut whole, mut scale, mut after_point) = (0_u64, 1_u64, false);
     if text.len() < 2 && !text.first().is_some_and(u8::is_ascii_digit) || text.len() > 16 {
         return None;
@@ -268,7 +292,8 @@ fn exact_decimal(text: &[u8]) -> Option<f64> {
                 whole = whole * 10 + u64::from(byte - b'0');
                 scale *= if after_point { 10 } else { 1 };
             }
-            _ => after_point = true,
+            b'.' if !after_point => after_point = true,
+            _ => return None,
         }
     }
     (whole < 1 << 53).then(|| whole as f64 / scale as f64)
