@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Recordings of axes that others published, identified by gwatt and by SciPy.
 
-    benches/recorded_axes.py target/release/gwatt --hsm150 FOLDER --lorenz FOLDER --camber FOLDER
+    benches/recorded_axes.py target/release/gwatt --hsm150 FOLDER --lorenz FOLDER --camber FOLDER --emps FOLDER
 
 Each folder is a copy of a public repository: malik-robert/HSM150-data,
-TeacherRock/Lorenz_Friction, nicolazande/camber-control. The recordings are written as CSV, as a
+TeacherRock/Lorenz_Friction, nicolazande/camber-control, forgi86/sysid-neural-continuous (with the
+EMPS benchmark of Janot, Gautier and Brunot, 2019). The recordings are written as CSV, as a
 technician would name their columns, and given to `gwatt identify`. The reference next to it is
 least squares of the inverse dynamic model with the true structure: position and force through
 the same Butterworth filter there and back (scipy.signal.filtfilt), central differences, friction
@@ -32,6 +33,9 @@ HSM150_CATALOGUE = 1.2e-4
 # its model_setup.m.
 LIN_TORQUE_CONSTANT = 42.9e-3
 LIN_RAD_M = 1000 * 2 * numpy.pi * 85.58 / 24
+
+# EMPS: the authors' least squares of the standard set, kg.
+EMPS_PUBLISHED = 95.109
 
 
 class Run:
@@ -68,6 +72,13 @@ def camber(folder):
     data = numpy.loadtxt(path)
     force_n_ma = 1e-3 * LIN_TORQUE_CONSTANT * LIN_RAD_M
     yield Run("LinA", 1e-2, 1e-3 * data[:, 3], force_n_ma * data[:, 5])
+
+
+def emps(folder):
+    """A slide in closed loop, the standard set and that with pulses: position and the drive's volts."""
+    for name in ("DATA_EMPS", "DATA_EMPS_PULSES"):
+        data = scipy.io.loadmat(folder / f"examples/EMPS/data/{name}.mat")
+        yield Run(name, 1e-3, data["qm"][:, 0], data["gtau"][0, 0] * data["vir"][:, 0])
 
 
 def rows(run, cutoff_hz, still):
@@ -115,6 +126,7 @@ SETS = {
     "hsm150": (hsm150, True, 25.0, HSM150_CATALOGUE),
     "lorenz": (lorenz, True, 25.0, None),
     "camber": (camber, False, 10.0, None),
+    "emps": (emps, False, 30.0, EMPS_PUBLISHED),
 }
 
 

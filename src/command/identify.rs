@@ -130,7 +130,6 @@ fn heading(
         .get(Quantity::Force)
         .or_else(|| recording.get(Quantity::Excitation));
     let is_torque = force.is_some_and(|force| force.kind == Kind::Rotary);
-    let slides = motion(recording) == Some(Kind::Linear);
     let mut notes = Vec::new();
     if !recording.ignored.is_empty() {
         notes.push(format!(
@@ -139,11 +138,13 @@ fn heading(
         ));
     }
     notes.extend(recording.notes.iter().cloned());
-    let lever_is_missing = is_torque && slides;
+    let lever_is_missing =
+        force.is_some_and(|force| motion(recording).is_some_and(|kind| kind != force.kind));
     if lever_is_missing {
-        notes.push(
-            "torque with a motion in metres: figures are for a lever of 1 m; give --lead-mm to get mass and force".to_owned(),
-        );
+        notes.push(format!(
+            "{}: figures are for a lever of 1 m; give --lead-mm to get mass and force",
+            mixed(is_torque)
+        ));
     }
     Heading {
         recording: title(&args.recordings),
@@ -152,6 +153,15 @@ fn heading(
         validation,
         lever_is_missing,
         notes,
+    }
+}
+
+/// What does not go together without a lever.
+fn mixed(is_torque: bool) -> &'static str {
+    if is_torque {
+        "torque with a motion in metres"
+    } else {
+        "force with a motion in radians"
     }
 }
 
@@ -309,7 +319,8 @@ fn merged(
     );
     ensure!(
         !heading.lever_is_missing,
-        "torque with a motion in metres: give --lead-mm, so that the machine file gets mass and force"
+        "{}: give --lead-mm, so that the machine file gets mass and force",
+        mixed(heading.rotary)
     );
     let axis = axis_of(heading.axis)?;
     Merged::made(path, |name, text| {

@@ -24,7 +24,8 @@ pub struct Heading {
     pub rotary: bool,
     /// Relative error on a second recording.
     pub validation: Option<f64>,
-    /// Torque was recorded with a motion in metres, and no lead is known.
+    /// Torque was recorded with a motion in metres, or force with one in radians, and no lead is
+    /// known.
     pub lever_is_missing: bool,
     /// Remarks.
     pub notes: Vec<String>,
@@ -118,6 +119,9 @@ pub fn rigid_json(heading: &Heading, rigid: &Rigid, out: &mut dyn Write) -> io::
     map.insert("bandwidth_hz".into(), json!(rigid.bandwidth_hz));
     map.insert("white".into(), json!(rigid.whiteness.is_white()));
     map.insert("resonates".into(), json!(rigid.resonates));
+    if rigid.lateness_s.is_some() {
+        insert(&mut map, "force_late_s", rigid.lateness_s);
+    }
     map.insert("effects".into(), effects_json(rigid));
     map.insert("saturation".into(), saturation_json(rigid));
     judged(&mut map, judgement::rigid(rigid));
@@ -295,6 +299,17 @@ pub fn rigid_text(heading: &Heading, rigid: &Rigid) -> String {
     }
     if let Some(offset) = rigid.offset {
         let _ = writeln!(text, "  offset            {} {force}", shown(offset));
+    }
+    if let Some(lateness) = rigid.lateness_s {
+        let milliseconds = Figure {
+            value: 1e3 * lateness.value,
+            std: 1e3 * lateness.std,
+        };
+        let _ = writeln!(
+            text,
+            "  force acts        {} ms later than recorded, and is taken so",
+            shown(milliseconds)
+        );
     }
     text.push_str(&effects_text(rigid, force));
     let _ = writeln!(text, "  relative error    {}", percent(rigid.rel_error));

@@ -255,6 +255,31 @@ fn a_lead_converts_torque_and_angle() {
     assert!(!shop.get("mill.toml").contains("mass_kg = 0."));
 }
 
+/// Torque of a motor with a slide in metres, or force of a slide with the motor's angle: a word
+/// on the lever that is missing, and nothing for a machine file.
+#[test]
+fn force_and_motion_of_different_kinds_want_a_lead() {
+    let shop = Shop::new();
+    let machine = shop.run(&["machine", "show", "vmc"]).stdout;
+    shop.put("mill.toml", &machine);
+    for (names, said) in [
+        ("torque_nm,position_m", "torque with a motion in metres"),
+        ("force_n,position_rad", "force with a motion in radians"),
+    ] {
+        let recording = axis_recording();
+        let (_, rows) = recording.split_once('\n').unwrap();
+        shop.put("x.csv", format!("time_s,{names}\n{rows}"));
+        let ran = shop.run(&["identify", "x.csv", "--axis", "x"]);
+        assert_eq!(ran.code, 0, "{}", ran.stderr);
+        let note = format!("{said}: figures are for a lever of 1 m; give --lead-mm");
+        assert!(ran.stderr.contains(&note), "{}", ran.stderr);
+        let asked = ["identify", "x.csv", "--axis", "x", "--into", "mill.toml"];
+        shop.run(&asked)
+            .refused(&format!("{said}: give --lead-mm, so that the machine file"));
+        assert_eq!(shop.get("mill.toml"), machine);
+    }
+}
+
 /// The data of the page that `identify --html` writes.
 fn page(shop: &Shop, recording: &str, more: &[&str]) -> serde_json::Value {
     let recording = format!(

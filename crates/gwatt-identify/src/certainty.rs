@@ -32,6 +32,8 @@ pub const MISSED_ENERGY: f64 = 4.0;
 /// Once in so many recordings a model that misses nothing is widened by the highest point of
 /// a spectrum: about [`MISSED_ENERGY`] as a chance.
 pub const MISSED_SELDOM: f64 = 1e-4;
+/// Standard errors from which on a force acts later than it was recorded.
+pub const LATENESS: f64 = 4.0;
 /// Standard errors from which on a delay is worth advice: it costs little to follow.
 pub const DELAY_ADVICE: f64 = 2.0;
 /// Standard deviations by which the shoulder of a dip stands out of the noise.

@@ -46,6 +46,7 @@ mod friction;
 mod header_name;
 mod integrated;
 mod stepwise_search;
+mod lateness;
 mod layout;
 mod leaky_integrator;
 mod methods;

@@ -9,6 +9,7 @@ use super::equations::Equations;
 use super::error::{IdentifyError, Outcome};
 pub use super::figure::Figure;
 use super::friction::{Solved, Terms, inertial, left_above, left_of, solve_best};
+use super::lateness;
 use super::noise::Whiteness;
 use super::recording::Recording;
 use super::rigidity::resonates;
@@ -56,6 +57,9 @@ pub struct Rigid {
     pub resonates: bool,
     /// Whether the motion slides or turns: units of what has to do with places.
     pub motion: Kind,
+    /// By how much later than recorded the force acts, s; absent where the recordings do not
+    /// show it. The figures are those of the force as late as that.
+    pub lateness_s: Option<Figure>,
     /// Forces that no mass and friction have, estimated together with them.
     pub effects: Vec<Effect>,
     /// Whether the force ends at a value.
@@ -151,14 +155,14 @@ pub fn fit_all(
     };
     enough(&all, least)?;
     let solved = solve_best(&mut all, friction).ok_or_else(not_excited)?;
-    let found = effects::found(&all, friction, &solved);
+    let (found, lateness_s) = lateness::fitted(&all, friction, &solved);
     let solved = &found.solved;
     let samples = enough(&found.all, solved.terms)?;
     let mass_std = solved.covariance[(0, 0)].sqrt();
     if !mass_std.is_finite() {
         return Err(not_excited());
     }
-    Ok(described(found, samples, bandwidth_hz))
+    Ok(described(found, lateness_s, samples, bandwidth_hz))
 }
 
 fn not_excited() -> IdentifyError {
@@ -179,7 +183,7 @@ fn combined(solved: &Solved, weights: &[f64]) -> Figure {
     }
 }
 
-fn described(found: Found, samples: usize, bandwidth_hz: f64) -> Rigid {
+fn described(found: Found, lateness_s: Option<Figure>, samples: usize, bandwidth_hz: f64) -> Rigid {
     let (all, solved) = (&found.all[..], &found.solved);
     let single = |index: usize| {
         let mut weights = vec![0.0; index];
@@ -235,6 +239,7 @@ fn described(found: Found, samples: usize, bandwidth_hz: f64) -> Rigid {
         whiteness: Whiteness::of(&left, 20.min(samples / 5)),
         resonates: rel_error > SUSPECT && all.iter().any(is_flexible),
         motion: all.first().map_or(Kind::Linear, |it| it.raw.motion),
+        lateness_s,
         effects: found.effects,
         saturation: found.saturation,
         theta,
@@ -324,6 +329,9 @@ fn settled(rigid: &Rigid, other: &Recording) -> Outcome<(Equations, Vec<f64>)> {
             ));
         }
         equations.leave_out(forward < backward);
+    }
+    if let Some(lateness_s) = rigid.lateness_s {
+        lateness::delay(&mut equations, lateness_s.value);
     }
     let theta = effects::add_known(
         &mut equations,

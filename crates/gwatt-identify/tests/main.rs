@@ -2,6 +2,7 @@
 
 mod coverage;
 mod effects;
+mod lateness;
 mod presets;
 mod rubbing;
 mod simulated;

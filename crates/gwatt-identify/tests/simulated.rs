@@ -152,13 +152,19 @@ impl Axis {
 
     /// Where a force moves it, in the middle of each sample.
     pub(crate) fn moved_by(&self, force: &[f64]) -> Vec<f64> {
+        self.read_within(force, 0.5)
+    }
+
+    /// Where a force moves it that is held for each sample, after such a share of it.
+    pub(crate) fn read_within(&self, force: &[f64], share: f64) -> Vec<f64> {
         const STEPS: usize = 20;
+        let read_at = (share * STEPS as f64) as usize;
         let h = PERIOD_S / STEPS as f64;
         let (mut x, mut v) = (0.0, 0.0);
         let moved = force.iter().map(|force| {
             let mut middle = x;
             for step in 0..STEPS {
-                if step == STEPS / 2 {
+                if step == read_at {
                     middle = x;
                 }
                 let smooth = self.viscous * v + self.coulomb * libm::tanh(v / 1e-3);

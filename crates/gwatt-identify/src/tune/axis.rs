@@ -166,8 +166,15 @@ pub fn of_recording(recording: &Recording, letter: char, choice: &Choice) -> Out
     let found_dips = dips(&found.response);
     let (zeros, hidden) = visible(&found, &found_dips);
     let mut notes = Vec::new();
-    if rotary && motion_slides(recording) {
-        notes.push("torque with a motion in metres: the inertia is for a lever of 1 m".to_owned());
+    if let (Some(force), Some(motion)) = (force, motion(recording))
+        && force.kind != motion
+    {
+        let which = if rotary {
+            "torque with a motion in metres: the inertia"
+        } else {
+            "force with a motion in radians: the mass"
+        };
+        notes.push(format!("{which} is for a lever of 1 m"));
     }
     if from_command && (found.transfer.gain - 1.0).abs() > GAIN_OFF {
         notes.push(format!(
@@ -223,14 +230,15 @@ pub fn of_recording(recording: &Recording, letter: char, choice: &Choice) -> Out
     })
 }
 
-fn motion_slides(recording: &Recording) -> bool {
+/// Whether the motion slides or turns.
+fn motion(recording: &Recording) -> Option<Kind> {
     let motions = [
         Quantity::Acceleration,
         Quantity::Velocity,
         Quantity::Position,
     ];
-    let signal = motions.into_iter().find_map(|q| recording.get(q));
-    signal.is_some_and(|signal| signal.kind == Kind::Linear)
+    let signal = motions.into_iter().find_map(|q| recording.get(q))?;
+    Some(signal.kind)
 }
 
 /// Zeros of the model that make a dip, and those that make none.
