@@ -287,7 +287,9 @@ fn klipper() {
     let found = import(&[main], Wanted::default(), &near).unwrap();
     assert_eq!(render(&found.warnings), "");
     assert!(
-        found.toml.contains("Macros (FAN, PRINT_START)"),
+        found
+            .toml
+            .contains("unknown_macros = [\"FAN\", \"PRINT_START\"]"),
         "{}",
         found.toml
     );
@@ -323,6 +325,34 @@ fn klipper() {
     "#);
 }
 
+/// Macros are listed; those in place of words are not, since the words of prints would be unknown
+/// then, and neither are names that no program can call.
+#[test]
+fn macros_of_klipper() {
+    let names = (1..=9).map(|number| format!("[gcode_macro LONG_NAME_{number}]\ngcode:\n"));
+    let text = format!(
+        "[printer]\nkinematics: none\nmax_velocity: 300\nmax_accel: 3000\n[gcode_macro M109]\ngcode:\n\
+         [gcode_macro T0]\ngcode:\n[gcode_macro bad.name]\ngcode:\n{}",
+        names.collect::<String>()
+    );
+    let near = Folder(Vec::new());
+    let text = text.replace("kinematics: none", "kinematics: corexy");
+    let found = import(&[file("printer.cfg", &text)], Wanted::default(), &near).unwrap();
+    let (_, language) = found.toml.split_once("[language]\n").unwrap();
+    let (language, _) = language.split_once("\n\n").unwrap();
+    assert_snapshot!(language, @"");
+    assert!(
+        found.toml.contains("Macros in place of words (M109, T0)"),
+        "{}",
+        found.toml
+    );
+    assert!(
+        found.toml.contains("\nkinematics = \"corexy\"\n"),
+        "{}",
+        found.toml
+    );
+}
+
 #[test]
 fn core_kinematics_and_missing_includes() {
     let text =
@@ -337,7 +367,7 @@ fn core_kinematics_and_missing_includes() {
     settings:1, warning: `gone.cfg` was not found: nothing of it counts / put it where the line says, or give it as another FILE
       | [include gone.cfg]
       | ^^^^^^^^^^^^^^^^^^
-    settings:3, warning: two motors move two axes together: gwatt counts by axis / give both axes the larger mass and the rotors of both motors; see the head of the file
+    settings:3, warning: two motors move two axes together: they count by the robust bound / give both axes the larger mass and friction, and the rotors of both motors
       | kinematics: corexy
       |             ^^^^^^
     ");

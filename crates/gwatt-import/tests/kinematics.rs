@@ -24,7 +24,7 @@ fn kinematics_that_hal_loads() {
       |        ^^^^^^^^^^^^^^^
     ");
     assert_snapshot!(with("loadrt corexykins # belts\n"), @r"
-    m.hal:1, warning: two motors move two axes together: gwatt counts by axis / give both axes the larger mass and the rotors of both motors; see the head of the file
+    m.hal:1, warning: two motors move two axes together: they count by the robust bound / give both axes the larger mass and friction, and the rotors of both motors
       | loadrt corexykins # belts
       |        ^^^^^^^^^^
     ");
