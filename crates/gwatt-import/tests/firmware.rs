@@ -296,6 +296,8 @@ fn klipper() {
     assert_snapshot!(in_force(&found.toml), @r#"
     controller = "klipper"
     [converter]
+    [language]
+    unknown_macros = ["FAN", "PRINT_START"] # [gcode_macro]
     [look_ahead]
     min_cruise_ratio = 0.5       # max_accel_to_decel: 1500 (line 6)
     [look_ahead.square_corner]
@@ -340,7 +342,12 @@ fn macros_of_klipper() {
     let found = import(&[file("printer.cfg", &text)], Wanted::default(), &near).unwrap();
     let (_, language) = found.toml.split_once("[language]\n").unwrap();
     let (language, _) = language.split_once("\n\n").unwrap();
-    assert_snapshot!(language, @"");
+    assert_snapshot!(language, @r#"
+    unknown_macros = [
+        "LONG_NAME_1", "LONG_NAME_2", "LONG_NAME_3", "LONG_NAME_4", "LONG_NAME_5",
+        "LONG_NAME_6", "LONG_NAME_7", "LONG_NAME_8", "LONG_NAME_9",
+    ] # [gcode_macro]
+    "#);
     assert!(
         found.toml.contains("Macros in place of words (M109, T0)"),
         "{}",
