@@ -26,6 +26,7 @@ mod slicers;
 mod verdicts;
 mod verifies;
 mod watches;
+mod whole_drafts;
 mod ways;
 
 use std::fs::{self, File};
