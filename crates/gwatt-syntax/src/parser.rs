@@ -1,14 +1,13 @@
 //! The grammar of a line: bytes to pieces and a block, in nom.
 //!
-//! Every byte lands in exactly one piece. The items stand in order of
-//! precedence in [`item`]; what none of them takes is unknown text up to the
-//! next blank or word.
+//! Every byte lands in exactly one piece; what no item of [`item`] takes is
+//! unknown text up to the next blank or word.
 
 use nom::Parser;
 use nom::branch::alt;
-use nom::bytes::complete::{is_a, tag, take, take_while};
+use nom::bytes::complete::{take, take_while};
 use nom::character::complete::space1;
-use nom::combinator::{cond, fail, not, recognize, rest};
+use nom::combinator::{not, peek, recognize, rest, verify};
 use nom::multi::many0_count;
 use nom::sequence::{pair, preceded};
 
@@ -92,33 +91,38 @@ enum Item<'a> {
     Fault(IssueKind),
 }
 
-/// One item from the front of `input`.
+/// One item from the front of `input`. Its first byte says which may be there, so that a line is
+/// not held against all of them at each of its places.
 fn item(input: &[u8], place: Place) -> Parsed<'_, Item<'_>> {
     use IssueKind::{Expression, Flow, MissingLetter, MissingNumber, UnclosedComment, UnknownText};
     let tape = place == Place::Beginning;
     let delete = matches!(place, Place::Beginning | Place::BehindNumber);
-    alt((
-        space1.map(|_| Item::Plain(PieceKind::Blank)),
-        preceded(enabled(tape), pair(tag("%"), rest)).map(|_| Item::Plain(PieceKind::Tape)),
-        preceded(enabled(delete), token::block_delete).map(Item::Delete),
-        pair(tag(";"), rest).map(|_| Item::Plain(PieceKind::LineComment)),
-        token::comment.map(|_| Item::Plain(PieceKind::Comment)),
-        pair(tag("("), rest).map(|_| Item::Fault(UnclosedComment)),
-        flow.map(|_| Item::Fault(Flow)),
-        token::word.map(Item::Word),
-        expression.map(|_| Item::Fault(Expression)),
-        token::number.map(|_| Item::Fault(MissingLetter)),
-        lone_letter.map(|_| Item::Fault(MissingNumber)),
-        unknown.map(|_| Item::Fault(UnknownText)),
-    ))
-    .parse(input)
-}
-
-/// Takes nothing where `yes`; fails otherwise.
-fn enabled<'a>(
-    yes: bool,
-) -> impl Parser<&'a [u8], Output = Option<()>, Error = nom::error::Error<&'a [u8]>> {
-    cond(!yes, fail())
+    match input {
+        [b' ' | b'\t', ..] => space1.map(|_| Item::Plain(PieceKind::Blank)).parse(input),
+        [b'%', ..] if tape => rest.map(|_| Item::Plain(PieceKind::Tape)).parse(input),
+        [b'/', ..] if delete => token::block_delete.map(Item::Delete).parse(input),
+        [b';', ..] => rest
+            .map(|_| Item::Plain(PieceKind::LineComment))
+            .parse(input),
+        [b'(', ..] => alt((
+            token::comment.map(|_| Item::Plain(PieceKind::Comment)),
+            rest.map(|_| Item::Fault(UnclosedComment)),
+        ))
+        .parse(input),
+        [b'0'..=b'9' | b'.' | b'+' | b'-', ..] => alt((
+            token::number.map(|_| Item::Fault(MissingLetter)),
+            unknown.map(|_| Item::Fault(UnknownText)),
+        ))
+        .parse(input),
+        _ => alt((
+            flow.map(|_| Item::Fault(Flow)),
+            token::word.map(Item::Word),
+            expression.map(|_| Item::Fault(Expression)),
+            lone_letter.map(|_| Item::Fault(MissingNumber)),
+            unknown.map(|_| Item::Fault(UnknownText)),
+        ))
+        .parse(input),
+    }
 }
 
 /// A letter without a number, with what is left of a number after it.
@@ -130,12 +134,21 @@ fn lone_letter(input: &[u8]) -> Parsed<'_, &[u8]> {
 /// A run that begins nothing known, to the next blank, comment, expression or
 /// word.
 fn unknown(input: &[u8]) -> Parsed<'_, &[u8]> {
-    let boundary = alt((is_a(" \t(;#[]<"), recognize(token::word)));
+    let inside = verify(peek(rest), |text: &[u8]| !ends_unknown(text));
     recognize(pair(
         unknown_part,
-        many0_count(preceded(not(boundary), unknown_part)),
+        many0_count(preceded(inside, unknown_part)),
     ))
     .parse(input)
+}
+
+/// Whether a blank, a comment, an expression or a word is next.
+fn ends_unknown(text: &[u8]) -> bool {
+    match text {
+        [b' ' | b'\t' | b'(' | b';' | b'#' | b'[' | b']' | b'<', ..] => true,
+        [byte, ..] if token::is_letter(*byte) => token::is_word(text),
+        _ => false,
+    }
 }
 
 /// A name, a text in quotes, or any byte.

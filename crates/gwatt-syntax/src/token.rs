@@ -61,6 +61,11 @@ pub(super) fn word(input: &[u8]) -> Parsed<'_, WordText<'_>> {
     Ok((rest, word))
 }
 
+/// Whether a word is next.
+pub(super) fn is_word(input: &[u8]) -> bool {
+    (letter, space0, number).parse(input).is_ok()
+}
+
 /// The value of digits with at most one point, correctly rounded.
 pub(super) fn value(negative: bool, digits: &[u8]) -> f64 {
     // Digits and a point are always text that the standard library reads.

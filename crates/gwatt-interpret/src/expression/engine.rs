@@ -5,7 +5,7 @@
 use super::cursor::Cursor;
 use super::fault::Outcome;
 use super::operator::{Operator, Prefix};
-use super::terms::{Infix, Terms};
+use super::terms::{Infix, Terms, begins};
 
 /// Brackets and signs inside one another.
 const DEPTH_MAX: u32 = 64;
@@ -51,14 +51,18 @@ pub(crate) trait Grammar<'t> {
     fn next_infix(&mut self) -> Option<(Infix, usize)> {
         let infixes = self.terms().infixes;
         let cursor = self.cursor();
-        cursor.peek()?;
+        let first = cursor.peek()?;
+        // Most values have nothing after them.
+        let candidates = infixes.iter().filter(|(token, ..)| begins(token, first));
+        let mut candidates = candidates.peekable();
+        candidates.peek()?;
         let name = cursor.name();
         let rest = cursor.text.get(cursor.at..)?;
         let is_next = |token: &str| match name.as_str() {
             "" => rest.starts_with(token.as_bytes()),
             name => name == token,
         };
-        let found = infixes.iter().find(|(token, ..)| is_next(token))?;
+        let found = candidates.find(|(token, ..)| is_next(token))?;
         Some((*found, cursor.at + found.0.len()))
     }
 
@@ -127,12 +131,13 @@ pub(crate) trait Grammar<'t> {
                 cursor.at += 1;
                 Some(Prefix::Minus)
             }
-            _ => {
+            Some(byte) => {
                 let mut prefixes = terms.prefixes.iter();
                 prefixes
-                    .find(|(name, _)| cursor.take_name(name))
+                    .find(|(name, _)| begins(name, byte) && cursor.take_name(name))
                     .map(|(_, prefix)| *prefix)
             }
+            None => None,
         };
         let Some(prefix) = prefix else {
             return self.own_operand();
