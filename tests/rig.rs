@@ -101,7 +101,7 @@ fn controller() -> Controller {
             family: Family::Iso,
             dwell: Vec::new(),
             power_on_feed_mm_s: f64::INFINITY,
-            rapid_at_power_on: false,
+            power_on_motion: gwatt::machine::PowerOnMotion::None,
             loose_o_words: false,
             metric: true,
             units_kept: false,

@@ -68,14 +68,12 @@ impl<'m> Rewriter<'m> {
     /// Begins a program.
     #[must_use]
     pub fn new(machine: &'m Machine) -> Self {
-        let motion = if machine.controller.language.rapid_at_power_on {
-            Motion::Rapid
-        } else {
-            Motion::None
-        };
         Self {
             machine,
-            written: Written { motion, feed: None },
+            written: Written {
+                motion: Motion::at_power_on(&machine.controller.language),
+                feed: None,
+            },
             turned: Turned::new(machine),
             line_end: b"\n".to_vec(),
             skip: String::new(),

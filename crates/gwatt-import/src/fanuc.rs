@@ -53,6 +53,11 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
         let why = format!("bit DPI of {}", decimal.source);
         found.language(format!("decimal_point = \"{name}\""), why);
     }
+    if let Some(motion) = parameters.bit(3402, 0) {
+        let name = if motion.on { "feed" } else { "rapid" };
+        let why = format!("bit G01 of {}", motion.source);
+        found.language(format!("power_on_motion = \"{name}\""), why);
+    }
     if let Some(arc) = parameters.bit(3403, 5) {
         let name = if arc.on { "refused" } else { "line" };
         let why = format!("bit CIR of {}", arc.source);

@@ -36,6 +36,16 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
         let name = if straight { "linear" } else { "independent" };
         found.path(format!("rapid = \"{name}\""), mode.source());
     }
+    // The first group of G words: 1 is G0, 2 is G1.
+    let motion = data.at("GCODE_RESET_VALUES", 0);
+    let name = motion.and_then(|it| match it.text {
+        "1" => Some("rapid"),
+        "2" => Some("feed"),
+        _ => None,
+    });
+    if let (Some(motion), Some(name)) = (motion, name) {
+        found.language(format!("power_on_motion = \"{name}\""), motion.source());
+    }
     if let Some(feed) = data.first("DEFAULT_FEED")
         && let Some(value) = log.number(&feed.place, feed.text)
         && value > 0.0

@@ -11,7 +11,7 @@ fn fanuc() {
     let text = "%\nN00000Q1P00000000\nN01006Q1A1P00000000A2P00000000A3P00000000A4P00000001\n\
                 N01020Q1A1P88A2P89A3P90A4P66\nN01240Q1A1P-1500A2P0A3P0A4P0\nN01241Q1A1P-2500\nN01242Q1A1P0\nN01401Q1L1P00000010\nN01420Q1A1P36000A2P36000A3P30000A4P9000\n\
                 N01422Q1L1P12000\nN01430Q1A1P0A2P0A3P0A4P0\nN01620Q1A1P100A2P100A3P120A4P100\n\
-                N01622Q1A1P32A2P64A3P64A4P3000\nN01783Q1A1P500A2P0A3P0A4P0\nN03401Q1L1P00000000\nN03741Q1S1P8000\nN03403Q1L1P00000000\n\
+                N01622Q1A1P32A2P64A3P64A4P3000\nN01783Q1A1P500A2P0A3P0A4P0\nN03401Q1L1P00000000\nN03741Q1S1P8000\nN03403Q1L1P00000000\nN03402Q1L1P00000001\n\
                 N10000Q0A1P99\n%\n"
         .replace('\n', "\n\r\r");
     let found = imported(&text);
@@ -29,6 +29,7 @@ fn fanuc() {
     max_feed_mm_min = 12000      # N01422 L1 P12000 (line 10)
     [language]
     decimal_point = "least-increment" # bit DPI of N03401 L1 P00000000 (line 15)
+    power_on_motion = "feed"     # bit G01 of N03402 L1 P00000001 (line 18)
     arc_without_center = "line"  # bit CIR of N03403 L1 P00000000 (line 17)
     [axes.X]
     kind = "linear"
@@ -90,7 +91,7 @@ fn sinumerik() {
                 N32300 $MA_MAX_AX_ACCEL[0,AX1]=4 '1f\nN32300 $MA_MAX_AX_ACCEL[1,AX1]=5\nN32300 $MA_MAX_AX_ACCEL[2,AX1]=3\n\
                 N32300 $MA_MAX_AX_ACCEL[3,AX1]=2.5\nN32300 $MA_MAX_AX_ACCEL[4,AX1]=2\nN32300 $MA_MAX_AX_ACCEL[0,AX3]=3\n\
                 N32310 $MA_MAX_ACCEL_OVL_FACTOR[0,AX1]=1.2\nN32431 $MA_MAX_AX_JERK[0,AX1]=50\n\
-                N34070 $MA_REFP_VELO_POS[AX1]=10000\nN34100 $MA_REFP_SET_POS[0,AX1]=-3\nN30600 $MA_FIX_POINT_POS[0,AX1]=-7\nN42110 $SC_DEFAULT_FEED=2000\n";
+                N34070 $MA_REFP_VELO_POS[AX1]=10000\nN34100 $MA_REFP_SET_POS[0,AX1]=-3\nN30600 $MA_FIX_POINT_POS[0,AX1]=-7\nN42110 $SC_DEFAULT_FEED=2000\nN20150 $MC_GCODE_RESET_VALUES[0]=1\n";
     let found = imported(text);
     assert!(
         found.toml.contains("# jerk_mm_s3 = 50000"),
@@ -110,6 +111,7 @@ fn sinumerik() {
     [path]
     rapid = "independent"        # N20730 $MC_G0_LINEAR_MODE=0 (line 6)
     [language]
+    power_on_motion = "rapid"    # N20150 $MC_GCODE_RESET_VALUES[0]=1 (line 26)
     power_on_feed_mm_min = 2000  # N42110 $SC_DEFAULT_FEED=2000 (line 25)
     [axes.X]
     kind = "linear"

@@ -4,6 +4,7 @@
 //! Groups follow RS274/NGC (LinuxCNC G-code reference, "Modal Groups").
 
 use super::tools::ToolLength;
+use gwatt_machine::{Language, PowerOnMotion};
 
 /// What the motion words mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,6 +25,16 @@ pub enum Motion {
 }
 
 impl Motion {
+    /// What is in force before the first motion word, as far as it is known.
+    #[must_use]
+    pub fn at_power_on(language: &Language) -> Self {
+        match language.power_on_motion {
+            PowerOnMotion::None | PowerOnMotion::Unknown => Self::None,
+            PowerOnMotion::Rapid => Self::Rapid,
+            PowerOnMotion::Feed => Self::Linear,
+        }
+    }
+
     /// The digit after G; `None` where no word may be written.
     #[must_use]
     pub fn digit(self) -> Option<u8> {

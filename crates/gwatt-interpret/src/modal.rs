@@ -106,11 +106,7 @@ impl Modal {
     pub fn power_on(machine: &Machine) -> Self {
         let language = &machine.controller.language;
         Self {
-            motion: if language.rapid_at_power_on {
-                Motion::Rapid
-            } else {
-                Motion::None
-            },
+            motion: Motion::at_power_on(language),
             plane: if language.dialect.lathe.is_some() {
                 [2, 0, 1]
             } else {

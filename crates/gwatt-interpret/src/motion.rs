@@ -8,7 +8,7 @@ use super::printer::Course;
 use super::report::Report;
 use super::stray;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
-use gwatt_machine::{ALL_AXES, AxisKind, AxisSet, AxisValues};
+use gwatt_machine::{ALL_AXES, AxisKind, AxisSet, AxisValues, PowerOnMotion};
 use gwatt_motion::{Arc, FeedMode, Move, MoveKind, Step, Stray, hold_to_path, path_length};
 use gwatt_syntax::source::Span;
 
@@ -83,18 +83,32 @@ impl Control<'_> {
         run.facts.uses_feed = self.obeys_feed();
         match self.modal.motion {
             Motion::None | Motion::Special(_) => {
-                let span = run.whole();
-                run.report
-                    .error(
-                        "no-motion-word",
-                        "axis words without a motion word in force",
-                        span,
-                    )
-                    .help("write G0, G1, G2 or G3 in this block or before");
+                if self.goes_before_any_word(run) {
+                    self.straight(run);
+                }
             }
             Motion::Rapid | Motion::Linear => self.straight(run),
             Motion::ArcCw | Motion::ArcCcw => self.arc(run),
         }
+    }
+
+    /// Whether a block that comes before any motion word counts as a rapid, which is reported; if
+    /// not, the control refuses it.
+    pub(super) fn goes_before_any_word(&self, run: &mut Run<'_, '_>) -> bool {
+        let span = run.whole();
+        let rule = "no-motion-word";
+        if self.machine.controller.language.power_on_motion == PowerOnMotion::Unknown {
+            let message = "no motion word yet: which one is in force then, a setting of the control \
+                           says (`power_on_motion` under [language]); taken for G0, the fastest";
+            run.report.note_once(rule, message, span);
+            run.facts.no_motion_word = true;
+            return true;
+        }
+        let message = "axis words without a motion word in force";
+        run.report
+            .error(rule, message, span)
+            .help("write G0, G1, G2 or G3 in this block or before");
+        false
     }
 
     /// A dwell where the axes stand.
@@ -202,8 +216,8 @@ impl Control<'_> {
     }
 
     pub(super) fn straight(&mut self, run: &mut Run<'_, '_>) {
-        let rapid =
-            self.modal.motion == Motion::Rapid && !self.machine.controller.language.rapid_uses_feed;
+        let rapid = matches!(self.modal.motion, Motion::Rapid | Motion::None)
+            && !self.machine.controller.language.rapid_uses_feed;
         let kind = if rapid {
             MoveKind::Rapid
         } else {

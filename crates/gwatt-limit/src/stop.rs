@@ -1,16 +1,41 @@
 //! Rapids that are written as feeds between two stops, and how they run there.
 
 use super::case::{Case, Ends};
-use super::change::Change;
+use super::change::{Change, Permit};
 use super::lever::Obstacle;
 use super::solver::Solver;
-use gwatt_machine::{CornerRule, Knob, PathMode, RapidJoint};
+use gwatt_machine::{CornerRule, Knob, Machine, PathMode, RapidJoint};
 use gwatt_motion::{Corner, Move, MoveKind};
 use gwatt_plan::plan;
+use gwatt_power::Assessment;
 
 /// The share of its time between dwells in which a feed must run in exact stop to be
 /// written so.
 const SOONER: f64 = 0.999;
+
+impl Change {
+    /// A rapid as a feed at the speed that it has, stopping where the rapid does. `assessment` is
+    /// that of the rapid.
+    #[must_use]
+    pub fn as_feed_in_place(
+        machine: &Machine,
+        mv: &Move,
+        permit: &Permit,
+        assessment: &Assessment,
+    ) -> Self {
+        let feed = Self::as_feed_at(machine, mv, permit, assessment.speed_mm_s);
+        let blends = feed.apply(machine, mv, permit).path_mode == PathMode::LookAhead;
+        let stops = if machine.controller.planner.rapid_joint == RapidJoint::All {
+            permit.stop_word && !assessment.blended && !assessment.ahead
+        } else {
+            permit.exact_stop
+        };
+        Self {
+            exact_stop: blends && stops,
+            ..feed
+        }
+    }
+}
 
 impl Solver<'_> {
     /// Whether a rapid became a feed that begins and ends at rest, since feeds

@@ -45,8 +45,8 @@ pub struct Language {
     /// The F in force at power-on, mm/s; infinite where none is known. An earlier program may
     /// have left another one.
     pub power_on_feed_mm_s: f64,
-    /// `true`: G0 is in force at power-on; else no motion word is.
-    pub rapid_at_power_on: bool,
+    /// The motion word in force at power-on.
+    pub power_on_motion: PowerOnMotion,
     /// `true`: O words as FluidNC has them: a label may serve several branches and
     /// loops, and a break leaves nothing over.
     pub loose_o_words: bool,
@@ -112,6 +112,19 @@ pub struct Language {
     pub kept_variables: Vec<[u32; 2]>,
     /// What Fanuc, Haas and their relatives have besides.
     pub dialect: Dialect,
+}
+
+/// The motion word in force before a program has one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PowerOnMotion {
+    /// None: the control refuses a place without one.
+    None,
+    /// G0.
+    Rapid,
+    /// G1.
+    Feed,
+    /// One of these: a setting of the control decides.
+    Unknown,
 }
 
 /// When the tool changes where M6 stands in a block that moves.

@@ -26,7 +26,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
         let mut forced = own.fold(change, |change, ((step, mv), (assessment, _))| {
             let permit = entry.waiting(self.machine, mv, step).permit;
             let feed = if mv.moves_axes() {
-                Change::as_feed_at(self.machine, mv, &permit, assessment.speed_mm_s)
+                Change::as_feed_in_place(self.machine, mv, &permit, assessment)
             } else {
                 Change::STANDING
             };

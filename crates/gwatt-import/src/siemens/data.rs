@@ -115,12 +115,15 @@ impl<'t> Data<'t> {
             .find(|datum| datum.name == name && datum.channel == 1)
     }
 
-    /// The text of an entry of a table of the first channel, without quotes.
-    pub(crate) fn entry(&self, name: &str, index: usize) -> Option<&str> {
+    /// An entry of a table of the first channel.
+    pub(crate) fn at(&self, name: &str, index: usize) -> Option<&Datum<'t>> {
         let mut list = self.list.iter();
-        let found =
-            list.find(|it| it.name == name && it.channel == 1 && it.index.parse() == Ok(index));
-        found.map(|it| it.text.trim_matches('"'))
+        list.find(|it| it.name == name && it.channel == 1 && it.index.parse() == Ok(index))
+    }
+
+    /// Its text without quotes.
+    pub(crate) fn entry(&self, name: &str, index: usize) -> Option<&str> {
+        self.at(name, index).map(|it| it.text.trim_matches('"'))
     }
 
     /// The file of the first value.

@@ -103,14 +103,7 @@ impl Control<'_> {
         }
         let kind = match self.modal.motion {
             Motion::Linear => MoveKind::Feed,
-            Motion::None => {
-                let span = run.whole();
-                let message = "no motion word yet: what G word is in force then, the control's \
-                               data say; taken for G0, which is the fastest";
-                run.report.note_once("no-motion-word", message, span);
-                run.facts.no_motion_word = true;
-                MoveKind::Rapid
-            }
+            Motion::None if !self.goes_before_any_word(run) => return,
             _ => MoveKind::Rapid,
         };
         self.siemens_go(state, run, kind, &target, None);

@@ -41,8 +41,8 @@ pub(crate) struct LanguageTable {
     /// The words that G4 takes; if a block has several, the last one here wins.
     #[schemars(required)]
     pub(crate) dwell: Option<Vec<At<DwellTable>>>,
-    /// The motion word in force at power-on is G0; default false: none is.
-    pub(crate) rapid_at_power_on: Option<bool>,
+    /// The motion word in force at power-on; default "none".
+    pub(crate) power_on_motion: Option<PowerOnMotionName>,
     /// O words as FluidNC has them: a label may serve several branches and loops,
     /// and a break leaves nothing over; default false.
     pub(crate) loose_o_words: Option<bool>,
@@ -175,6 +175,21 @@ pub(crate) enum LeadName {
     AtEnd,
     Perpendicular,
     Corner,
+}
+
+/// The motion word in force before a program has one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum PowerOnMotionName {
+    /// None: the control refuses a place without one.
+    None,
+    /// G0.
+    Rapid,
+    /// G1.
+    Feed,
+    /// A setting of the control decides between G0 and G1: moves before any motion word count as
+    /// rapids, the fastest of both.
+    Unknown,
 }
 
 /// When the tool changes where M6 stands in a block that moves.

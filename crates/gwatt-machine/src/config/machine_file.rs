@@ -13,7 +13,7 @@ pub(crate) use super::axis_table::{
     TorquePointTable,
 };
 use super::controller_file::{
-    CompensationTable, DistanceName, PointName, ToolChangeName, UnitsName,
+    CompensationTable, DistanceName, PointName, PowerOnMotionName, ToolChangeName, UnitsName,
 };
 use super::levels::LevelsTable;
 use super::look_ahead::LookAheadTable;
@@ -191,6 +191,9 @@ pub(crate) struct OwnLanguageTable {
     pub(crate) decimal_point: Option<PointName>,
     /// Whether words of X are diameters.
     pub(crate) diameter: Option<bool>,
+    /// The motion word in force at power-on (Fanuc: parameter 3402 bit G01; SINUMERIK: machine
+    /// data 20150).
+    pub(crate) power_on_motion: Option<PowerOnMotionName>,
     /// The F in force at power-on, in mm/min (SINUMERIK: setting data 42110): where moves come
     /// before any F, none above it is written for them.
     pub(crate) power_on_feed_mm_min: Option<Positive>,

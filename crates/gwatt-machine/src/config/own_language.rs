@@ -36,6 +36,9 @@ pub(crate) fn take(
     language.type_2_as_type_1 = own.type_2_as_type_1 == Some(true);
     language.arc_without_center_is_line =
         own.arc_without_center == Some(ArcWithoutCenterName::Line);
+    if let Some(motion) = own.power_on_motion {
+        language.power_on_motion = profile::power_on_motion(motion);
+    }
     if let Some(feed) = &own.power_on_feed_mm_min {
         language.power_on_feed_mm_s = feed.value / SECONDS_PER_MINUTE;
     }

@@ -3,8 +3,8 @@
 use super::controller_file::{
     ArcRuleName, ArgumentName, CallBlockName, CompensationTable, ControllerFile, CornerName,
     DistanceName, DwellTable, FamilyName, FeedName, KnobTable, LanguageTable, LatheName, LeadName,
-    PlannerTable, PointName, RapidJointName, RapidKnobName, SpindleWaitName, TargetName,
-    ToolChangeName, UnitName, UnitsName,
+    PlannerTable, PointName, PowerOnMotionName, RapidJointName, RapidKnobName, SpindleWaitName,
+    TargetName, ToolChangeName, UnitName, UnitsName,
 };
 use super::findings::Findings;
 use super::look_ahead::look_ahead;
@@ -16,7 +16,8 @@ use super::word;
 use crate::axis::AxisId;
 use crate::controller::{
     ArcRule, CompensationCorner, CompensationLead, Controller, CutterCompensation, Dialect,
-    Language, Lathe, Planner, Point, RapidJoint, RapidKnob, RapidPath, SpindleWait, ToolChange,
+    Language, Lathe, Planner, Point, PowerOnMotion, RapidJoint, RapidKnob, RapidPath, SpindleWait,
+    ToolChange,
 };
 use crate::family::Family;
 use crate::knob::{Knob, KnobArgument, KnobTarget, KnobUnit};
@@ -74,7 +75,9 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
             .power_on_feed_mm_min
             .as_ref()
             .map_or(f64::INFINITY, |it| it.value / SECONDS_PER_MINUTE),
-        rapid_at_power_on: table.rapid_at_power_on.unwrap_or(false),
+        power_on_motion: table
+            .power_on_motion
+            .map_or(PowerOnMotion::None, power_on_motion),
         loose_o_words: table.loose_o_words.unwrap_or(false),
         metric: table.units != Some(UnitsName::Inch),
         units_kept: table.units_kept.unwrap_or(false),
@@ -177,6 +180,15 @@ fn dialect(table: &LanguageTable) -> Dialect {
 }
 
 /// When the tool changes, of its name.
+pub(crate) fn power_on_motion(name: PowerOnMotionName) -> PowerOnMotion {
+    match name {
+        PowerOnMotionName::None => PowerOnMotion::None,
+        PowerOnMotionName::Rapid => PowerOnMotion::Rapid,
+        PowerOnMotionName::Feed => PowerOnMotion::Feed,
+        PowerOnMotionName::Unknown => PowerOnMotion::Unknown,
+    }
+}
+
 pub(crate) fn tool_change(name: ToolChangeName) -> ToolChange {
     match name {
         ToolChangeName::BeforeMotion => ToolChange::BeforeMotion,
