@@ -73,6 +73,10 @@ pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static s
              \"after-motion\" under [language] of the machine file"
         }
         COMPENSATED | UNDER_COMPENSATION => "lower the feed by hand",
+        WITHOUT_STOP if machine.controller.name != language.name => {
+            "name the control in the machine file (controller = …): --dialect reads its words, \
+             while the moves are planned as the machine file says"
+        }
         WITHOUT_STOP if language.g61 == PathMode::ExactStop => {
             "program an exact stop (G61) before the block in front of it, or write the \
              move as a feed by hand"

@@ -62,7 +62,7 @@ impl Singles<'_> {
             return Err(WHY);
         }
         let (way, back) = match ways.as_slice() {
-            [way] => (way, None),
+            [way] if returns_to_r || keeps_level(way, of.modal.plane) => (way, None),
             [way, back] if !returns_to_r && back.len() == 1 => (way, back.first()),
             _ => return Err(WHY),
         };
@@ -155,6 +155,13 @@ fn ways(steps: &[Step]) -> Vec<Vec<&Move>> {
         }
     }
     ways
+}
+
+/// Whether a way ends on the level on which it begins, so that the cycle returns there as well
+/// where it begins at its end.
+fn keeps_level(way: &[&Move], [_, _, normal]: [usize; 3]) -> bool {
+    let ends = way.first().zip(way.last());
+    ends.is_none_or(|(first, last)| first.start[normal] == last.end[normal])
 }
 
 /// What of a way may be gone before its block, whatever level it returns to: up to R and to

@@ -142,7 +142,9 @@ impl<'m> Singles<'m> {
         match number {
             _ if lathe && (LATHE.contains(&number) || ACROSS.contains(&number)) => Ok(()),
             _ if PLAIN.contains(&number) || TURNING.contains(&number) => Ok(()),
-            _ => Err("it taps, or stops for the operator"),
+            740 | 840..=849 => Err("it taps"),
+            760 | 870 => Err("it turns the spindle to one angle and moves aside from the wall"),
+            _ => Err("it stops the spindle, or waits for the operator"),
         }
     }
 

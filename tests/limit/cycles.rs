@@ -301,9 +301,10 @@ fn what_is_not_written_out_is_said() {
     // Of what it is said it stands in the program that was read.
     assert!(found.contains("  line 2  rapid Z"), "{found}");
     for (program, why) in [
+        (drill.replace("G81", "G84 K2"), "it taps"),
         (
-            drill.replace("G81", "G84 K2"),
-            "it taps, or stops for the operator",
+            drill.replace("G81", "G76 Q1."),
+            "it turns the spindle to one angle and moves aside from the wall",
         ),
         (
             drill.replace("G81", "M29 S500\nG84"),
@@ -318,6 +319,11 @@ fn what_is_not_written_out_is_said() {
         let note = format!("the canned cycle is not written out: {why}");
         assert_eq!(found.matches(&note).count(), 1, "{found}");
     }
+    // LinuxCNC comes back to the level of G98 by the feed of the tap.
+    let tap = "G21 G90 S500 M3\nG0 Z50\nG98 G84 X0 Y0 Z-10 R2 F750\nG80\nM2\n";
+    let found = refused(&self::shop("linuxcnc", 300.0), tap, "feed,expand");
+    let note = "the canned cycle is not written out: it taps\n";
+    assert_eq!(found.matches(note).count(), 1, "{found}");
     // In a loop it is another place each time.
     let around = "G21 G90 G0 Z50.\n#1=0\nWHILE[#1 LT 2]DO1\nG81 X[400.*#1] Y300. Z-12. R2. F200.\n\
                   G80\n#1=#1+1\nEND1\nM30\n";

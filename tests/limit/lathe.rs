@@ -487,10 +487,7 @@ fn drilling_cycles_that_stay() {
             "G85 X-300. Z-20. R-3. F0.1",
             "its way out is faster than its F, which is per revolution",
         ),
-        (
-            "G84 X-300. Z-20. R-3. F0.1",
-            "it taps, or stops for the operator",
-        ),
+        ("G84 X-300. Z-20. R-3. F0.1", "it taps"),
     ];
     for (cycle, why) in cases {
         let shop = Shop::lathe("fanuc-lathe", 300.0, "");

@@ -41,6 +41,62 @@ fn blocks_before_the_first_motion_word_get_theirs() {
     assert_eq!(shop.get("same.mpf"), "X1\nY1\nM30\n");
 }
 
+/// Where corners are blended each of them keeps the stop that it has as a rapid.
+#[test]
+fn with_their_stops_on_every_control_whose_setting_decides() {
+    let program = "G90\nX400. Y300.\nX0. Y0.\nG1 X10. F500.\nM30\n";
+    for (controller, stop) in [
+        ("fanuc", "G9"),
+        ("haas", "G9"),
+        ("isg", "G60"),
+        ("mazak", "G9"),
+        ("mitsubishi", "G9"),
+        ("okuma", "G9"),
+        ("siemens", "G9"),
+        ("syntec", "G9"),
+    ] {
+        let linear = "[path]\nrapid = \"linear\"";
+        let shop = Shop::mill(controller, "peak_power_w = 700", linear, "");
+        shop.put("a.nc", program);
+        let (code, _, errors) = shop.run("limit a.nc --allow feed -o out.nc");
+        assert_eq!(code, 0, "{controller}: {errors}");
+        assert!(
+            errors.contains("note[no-motion-word]"),
+            "{controller}: {errors}"
+        );
+        let text = shop.get("out.nc");
+        // The shortest dwell makes sure of the stop before.
+        let lines: Vec<&str> = text.lines().filter(|line| *line != "G4 P1").collect();
+        let [first, there, back, rest @ ..] = &lines[..] else {
+            panic!("{controller}: {text}");
+        };
+        let begins = |line: &str, word: &str| line.starts_with(&format!("{stop} {word}"));
+        assert!(begins(there, "G1 X400. Y300. F"), "{controller}: {text}");
+        assert!(begins(back, "X0. Y0."), "{controller}: {text}");
+        assert_eq!((*first, rest), ("G90", &["G1 X10. F500.", "M30"][..]));
+    }
+}
+
+/// The machine file says which it is; LinuxCNC refuses a place without any.
+#[test]
+fn the_word_of_power_on() {
+    let kinds = |controller: &str, rest: &str| {
+        let shop = Shop::mill(controller, "peak_power_w = 700", rest, "");
+        shop.put("a.nc", "G90 F500.\nX10.\nM30\n");
+        let (code, moves, errors) = shop.run("moves a.nc");
+        let kind = |kind: &str| moves.contains(&format!("\"kind\":\"{kind}\""));
+        let noted = errors.contains("no-motion-word");
+        (code, kind("rapid"), kind("feed"), noted)
+    };
+    let said = |word: &str| format!("[language]\npower_on_motion = \"{word}\"");
+    assert_eq!(kinds("fanuc", ""), (0, true, false, true));
+    assert_eq!(kinds("fanuc", &said("rapid")), (0, true, false, false));
+    assert_eq!(kinds("fanuc", &said("feed")), (0, false, true, false));
+    assert_eq!(kinds("siemens", &said("feed")), (0, false, true, false));
+    assert_eq!(kinds("grbl", ""), (0, true, false, false));
+    assert_eq!(kinds("linuxcnc", ""), (2, false, false, true));
+}
+
 /// In a loop each of them gets its own word, which is right in each of its runs: one that
 /// fits as it is runs at its own speed, and one that stands at the slowest of all.
 #[test]

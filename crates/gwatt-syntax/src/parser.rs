@@ -91,8 +91,8 @@ enum Item<'a> {
     Fault(IssueKind),
 }
 
-/// One item from the front of `input`. Its first byte says which may be there, so that a line is
-/// not held against all of them at each of its places.
+/// One item from the front of `input`. Its first byte says which may be there, so that not all of
+/// them are tried at each place of a line.
 fn item(input: &[u8], place: Place) -> Parsed<'_, Item<'_>> {
     use IssueKind::{Expression, Flow, MissingLetter, MissingNumber, UnclosedComment, UnknownText};
     let tape = place == Place::Beginning;
