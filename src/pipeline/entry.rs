@@ -234,10 +234,11 @@ impl Entry {
             as_feed: reasons == [None; 3],
             exact_stop: may_stop,
             stands: !facts.compensated && (stops || blended_rapid && may_stop),
-            levels: !facts.compensated && knows_levels,
+            levels: !facts.compensated && knows_levels && !facts.no_motion_word,
             rests: !facts.compensated && (stops || stopping && self.moves == 1),
             line_before: !facts.compensated,
-            knobs: !facts.compensated && !unsure_unit,
+            // A word for rapids does nothing where the control starts with G1.
+            knobs: !facts.compensated && !unsure_unit && !facts.no_motion_word,
             apart: self.apart,
             stop_word: machine.controller.language.exact_stop_word.is_some()
                 && self.takes_stop_word(machine, skips),
