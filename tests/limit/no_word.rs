@@ -41,8 +41,8 @@ fn blocks_before_the_first_motion_word_get_theirs() {
     assert_eq!(shop.get("same.mpf"), "X1\nY1\nM30\n");
 }
 
-/// Where corners are blended each of them keeps the stop that it has as a rapid; the ISG kernel blends
-/// rapids too.
+/// Where corners are blended each of them keeps the stop that it has as a rapid. Controls that blend
+/// rapids too have none.
 #[test]
 fn with_their_stops_on_every_control_whose_setting_decides() {
     let program = "G90\nX400. Y300.\nX0. Y0.\nG1 X10. F500.\nM30\n";
@@ -53,13 +53,21 @@ fn with_their_stops_on_every_control_whose_setting_decides() {
         ("mazak", "G9 "),
         ("mitsubishi", "G9 "),
         ("okuma", "G9 "),
-        ("siemens", "G9 "),
+        ("siemens", ""),
         ("syntec", "G9 "),
+        ("iso", "G9 "),
     ] {
+        let dialect = if controller == "iso" {
+            "siemens"
+        } else {
+            controller
+        };
         let linear = "[path]\nrapid = \"linear\"";
         let shop = Shop::mill(controller, "peak_power_w = 700", linear, "");
         shop.put("a.nc", program);
-        let (code, _, errors) = shop.run("limit a.nc --allow feed -o out.nc");
+        let (code, _, errors) = shop.run(&format!(
+            "limit a.nc --dialect {dialect} --allow feed -o out.nc"
+        ));
         assert_eq!(code, 0, "{controller}: {errors}");
         assert!(
             errors.contains("note[no-motion-word]"),
