@@ -279,7 +279,7 @@ fn each_refusal_once() {
     ]
     .map(|program| moves("iso", &format!("{program}\n")))
     .into_iter()
-    .chain([moves("linuxcnc", "X1\n")])
+    .chain(["X1", "F1 G2"].map(|program| moves("linuxcnc", &format!("{program}\n"))))
     .collect();
     assert_snapshot!(all, @r#"
 1 no-feed: a feed move, but no F is in force | write F in this block or before; after G93, G94 or G95 it must be written again
@@ -291,6 +291,7 @@ fn each_refusal_once() {
 1 reference-axes: a reference point without axes | name the axes, as in G28 G91 Z0
 1 unsupported-code: M123 is a user-defined word, which gwatt does not support | if it moves no axis, say so in the machine file: ignored = ["M123"] under [language]; what it switches on is a [[load]]
 1 no-motion-word: axis words without a motion word in force | write G0, G1, G2 or G3 in this block or before
+1 arc-center: G2 without an end or a centre | write it in the block that moves; the control refuses it alone
 "#);
 }
 

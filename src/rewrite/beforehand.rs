@@ -35,6 +35,8 @@ pub struct Return<'a> {
     pub steps: &'a [Step],
     /// The motion word before it.
     pub motion_before: Motion,
+    /// G2 and G3 may stand on a line of their own.
+    pub arcs_stand_alone: bool,
     /// Absolute coordinates before it.
     pub absolute_before: bool,
     /// The state after it.
@@ -217,8 +219,8 @@ impl Return<'_> {
         }
         match self.motion_before {
             Motion::Linear => Some("G1"),
-            Motion::ArcCw => Some("G2"),
-            Motion::ArcCcw => Some("G3"),
+            Motion::ArcCw if self.arcs_stand_alone => Some("G2"),
+            Motion::ArcCcw if self.arcs_stand_alone => Some("G3"),
             _ => None,
         }
     }

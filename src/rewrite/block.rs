@@ -343,18 +343,24 @@ impl<'m> Rewriter<'m> {
         for line in self.turned.restore(in_force) {
             self.insert_line(&line, out);
         }
+        let family = self.machine.controller.language.family.facts();
+        let arc = matches!(original.motion, Motion::ArcCw | Motion::ArcCcw);
         let mut words = Vec::new();
-        if self.written.motion != original.motion {
+        // Where an arc's word may not stand alone, the next block that moves gets it.
+        if self.written.motion != original.motion && !(arc && family.arcs_need_words) {
             words.extend(motion_word(original.motion));
             self.written.motion = original.motion;
         }
         let feed = original.feed_value();
         if self.written.feed != feed && original.per_minute() {
-            let family = self.machine.controller.language.family.facts();
             if words.is_empty() && family.lines_need_command && feed.is_some() {
                 // An arc it reads only with its centre: a line takes its place.
-                let arc = !matches!(original.motion, Motion::Rapid | Motion::Linear);
-                let motion = if arc { Motion::Linear } else { original.motion };
+                let line = matches!(original.motion, Motion::Rapid | Motion::Linear);
+                let motion = if line {
+                    original.motion
+                } else {
+                    Motion::Linear
+                };
                 words.extend(motion_word(motion));
                 self.written.motion = motion;
             }

@@ -54,6 +54,22 @@ fn the_way_is_gone_before_the_return() {
     assert_snapshot!(text);
 }
 
+/// LinuxCNC and grbl refuse G2 without a place or a centre: where an arc's word was in force it is not
+/// put back by itself.
+#[test]
+fn no_word_of_an_arc_stands_alone() {
+    let program = "G21 G90 G17\nG0 X0 Y0 Z0\nF1000\nG2 X10 Y0 I5 J0\nG28\nM2\n";
+    let points = format!("{PLACES}G28 = {{ X = 0, Y = 0, Z = 0 }}\n");
+    for controller in ["linuxcnc", "grbl"] {
+        let shop = shop(controller, &points, "");
+        let text = shop.limited(program, "--allow feed");
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines.contains(&"G2 X10 Y0 I5 J0"), "{text}");
+        assert!(!lines.contains(&"G2"), "{text}");
+        assert!(text.contains("G1 X450.5 Y330."), "{text}");
+    }
+}
+
 #[test]
 fn what_is_not_known_is_asked_for() {
     let program = "G21 G90 G54\nG0 G43 H1 Z50.\nX400.\nG91 G28 Z0\nG28 X0\nM30\n";

@@ -1,7 +1,7 @@
 //! G2 and G3: the words of an arc.
 
 use super::arc::{self, ArcFault, Ends, Slack};
-use super::code::Motion;
+use super::code::{GCode, Motion};
 use super::control::{Control, Run};
 use super::letters::bit;
 use super::places::STANDSTILL_MM;
@@ -10,6 +10,19 @@ use gwatt_machine::units::MM_PER_INCH;
 use gwatt_machine::{ALL_AXES, AxisKind};
 use gwatt_motion::{Arc, MoveKind};
 use gwatt_syntax::source::Span;
+
+/// Reports a word for an arc in a block that has none of its words, where the control does.
+pub(super) fn lone_arc(run: &mut Run<'_, '_>) {
+    let arc = |code: &GCode| matches!(code, GCode::Motion(Motion::ArcCw | Motion::ArcCcw));
+    let mut words = run.words.g.iter();
+    let Some((_, number, span)) = words.find(|(code, ..)| arc(code)).copied() else {
+        return;
+    };
+    let message = format!("G{} without an end or a centre", number / 10);
+    run.report
+        .error("arc-center", message, span)
+        .help("write it in the block that moves; the control refuses it alone");
+}
 
 impl Control<'_> {
     pub(super) fn arc(&mut self, run: &mut Run<'_, '_>) {

@@ -1,5 +1,6 @@
 //! Motion: straight moves, arcs, reference points, and G92.
 
+use super::arc_words::lone_arc;
 use super::code::{GCode, Motion};
 use super::control::{Control, Run};
 use super::letters::{AXIS_LETTERS, bit};
@@ -77,6 +78,17 @@ impl Control<'_> {
         let arc = matches!(self.modal.motion, Motion::ArcCw | Motion::ArcCcw);
         let center = run.words.unused & (bit(b'I') | bit(b'J') | bit(b'K')) != 0;
         if !(run.words.has_axes() || arc && center) {
+            if arc
+                && self
+                    .machine
+                    .controller
+                    .language
+                    .family
+                    .facts()
+                    .arcs_need_words
+            {
+                lone_arc(run);
+            }
             return;
         }
         run.facts.uses_motion = true;

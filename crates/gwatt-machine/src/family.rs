@@ -38,6 +38,8 @@ pub struct FamilyFacts {
     pub reference_in_parameters: bool,
     /// A line without a command is not read.
     pub lines_need_command: bool,
+    /// G2 and G3 without a place or a centre are refused.
+    pub arcs_need_words: bool,
     /// The motion word before a canned cycle is in force again after it.
     pub motion_survives_cycles: bool,
     /// G80 stays in force after a canned cycle.
@@ -98,6 +100,7 @@ const ISO: FamilyFacts = FamilyFacts {
     returns_in_machine_coordinates: false,
     reference_in_parameters: false,
     lines_need_command: false,
+    arcs_need_words: false,
     motion_survives_cycles: true,
     g80_stays: false,
     level_by_g99: true,
@@ -117,6 +120,8 @@ const ISO: FamilyFacts = FamilyFacts {
 const RS274: FamilyFacts = FamilyFacts {
     feeds_in_machine_coordinates: true,
     reference_in_parameters: true,
+    // LinuxCNC: convert_arc ("R I J K words all missing for arc"); grbl: error 26.
+    arcs_need_words: true,
     motion_survives_cycles: false,
     g80_stays: true,
     level_by_g99: false,
@@ -146,6 +151,7 @@ const PLAIN: FamilyFacts = FamilyFacts {
 const MARLIN: FamilyFacts = FamilyFacts {
     comment_to_line_end: true,
     lines_need_command: true,
+    arcs_need_words: true,
     printer: true,
     ..PLAIN
 };

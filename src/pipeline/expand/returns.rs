@@ -62,6 +62,7 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before, machine: &Machine) ->
             block: line.block,
             steps: line.steps,
             motion_before: before.motion,
+            arcs_stand_alone: !language.family.facts().arcs_need_words,
             absolute_before: before.absolute,
             modal: line.interpreter.modal(),
             in_machine: facts.machine_coordinates,
