@@ -84,10 +84,22 @@ pub fn take_hints<R: Read + Seek + Send>(
             help.clone_into(&mut unfit.help);
         }
     }
-    if as_it_stands.is_empty() {
+    let has_cycles = machine.controller.language.family.facts().writes_out_cycles;
+    if as_it_stands.is_empty() || !has_cycles {
+        use_reasons(summary, &as_it_stands, &as_it_stands);
         return Ok(());
     }
-    let written_out = reasons(true, None)?;
+    use_reasons(summary, &as_it_stands, &reasons(true, None)?);
+    Ok(())
+}
+
+/// Puts the limiter's own reasons in place of the advice for lines that it could not lower: as the
+/// program stands, and with its cycles written out.
+fn use_reasons(
+    summary: &mut Summary,
+    as_it_stands: &BTreeMap<u64, Diagnostic>,
+    written_out: &BTreeMap<u64, Diagnostic>,
+) {
     for unfit in summary.unfit.iter_mut().chain(&mut summary.worst) {
         if !unfit.file.is_empty() || !as_it_stands.contains_key(&unfit.line) {
             continue;
@@ -100,7 +112,6 @@ pub fn take_hints<R: Read + Seek + Send>(
             Some((message, None)) => message.clone(),
         };
     }
-    Ok(())
 }
 
 /// How the limiter is asked for advice.

@@ -10,7 +10,7 @@ use super::conclusion::holds_one_way;
 use super::derate::{aim_lower, lower_further, missed_narrowly};
 use super::executor::read_whole;
 use super::expand::{NOT_WRITTEN_OUT, OriginalRows, Traced, Way, expand, explain, in_fixed_blocks};
-use super::pace::sooner;
+use super::pace::{by_acceleration, sooner};
 use super::pause::limit_waiting;
 use super::preset_notes::{NO_PRESET, NOT_SET};
 use super::readable::readable;
@@ -266,7 +266,7 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
     } = asked;
     let places = Cell::new(Vec::new());
     let learned = Cell::new(None);
-    let mut attempt_with = |target: &Machine, plan: Option<Plan>, start: Depths, again: bool| {
+    let mut attempt_with = |how, target: &Machine, plan: Option<Plan>, start, again: bool| {
         if again {
             input.rewind().map_err(Failure::Input)?;
             restart(&mut output, rows)?;
@@ -284,14 +284,17 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
         Ok(found.summary)
     };
     let stands = how.allowed.pause.then_some(Plan::NEVER);
-    let first = attempt_with(machine, stands, Depths::default(), false)?;
+    let first = attempt_with(how, machine, stands, Depths::default(), false)?;
     let first = sooner(how, first, &mut |paces| {
         let start = paces.map_or_else(Depths::default, Depths::by_measure);
-        let found = attempt_with(machine, stands, start, true)?;
+        let found = attempt_with(how, machine, stands, start, true)?;
         Ok((found, learned.take().unwrap_or_default()))
     })?;
+    let (how, first) = by_acceleration(machine, how, first, &mut |how| {
+        attempt_with(how, machine, stands, Depths::default(), true)
+    })?;
     let mut attempt = |target: &Machine, plan: Option<Plan>, again: bool| {
-        attempt_with(target, plan, Depths::default(), again)
+        attempt_with(how, target, plan, Depths::default(), again)
     };
     if missed_narrowly(&first) {
         return aim_lower(machine, first, &mut |target| attempt(target, None, true));

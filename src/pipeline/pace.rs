@@ -11,6 +11,7 @@ use super::derate::LAST_ROUND;
 use super::summary::AT_LENGTH_MAX;
 use super::{Failure, Law, LimitOptions, LimitSummary, Strategy};
 use crate::limit::{Paces, Place};
+use crate::machine::{Knob, Machine};
 
 /// What a program must have lost before other speeds are looked for, and what these must
 /// bring in, as a share of its time.
@@ -69,22 +70,53 @@ pub(super) fn sooner(
 
 /// Whether there may be something to gain.
 fn is_worth(how: LimitOptions, first: &LimitSummary) -> bool {
-    let (before, after) = (&first.before, &first.after);
     let solved = matches!(
         how.strategy,
         Strategy::Speed | Strategy::Optimal | Strategy::Split
     );
+    solved && how.law == Law::Exact && first.before.moves <= AT_LENGTH_MAX && loses(first)
+}
+
+/// Whether a program whose moves are planned together loses time, or does not fit for reasons that
+/// other speeds may do away with.
+fn loses(first: &LimitSummary) -> bool {
+    let (before, after) = (&first.before, &first.after);
     let lost_s = after.duration_s - before.duration_s;
-    solved
-        && how.law == Law::Exact
-        && after.ahead
-        && before.moves <= AT_LENGTH_MAX
+    after.ahead
         && if first.certified {
             lost_s > LOSS * before.duration_s
         } else {
             let mut reasons = first.reasons.iter();
             reasons.all(|reason| OPEN.contains(&reason.rule))
         }
+}
+
+/// A program that is too long for speeds by measure, with words for acceleration alone where that is
+/// sooner: lower speeds of many short lines slow their neighbours down too. `first` is what came of
+/// both, and `run` limits it in another way.
+pub(super) fn by_acceleration(
+    machine: &Machine,
+    how: LimitOptions,
+    first: LimitSummary,
+    run: &mut dyn FnMut(LimitOptions) -> Result<LimitSummary, Failure>,
+) -> Result<(LimitOptions, LimitSummary), Failure> {
+    let is_long = first.before.moves > AT_LENGTH_MAX;
+    let both = how.strategy == Strategy::Optimal && how.law == Law::Exact;
+    let has_word = machine.controller.knobs.iter().any(Knob::lowers_accel);
+    if !(is_long && both && has_word && loses(&first)) {
+        return Ok((how, first));
+    }
+    let alone = LimitOptions {
+        strategy: Strategy::Accel,
+        ..how
+    };
+    let found = run(alone)?;
+    let sooner = !first.certified || found.after.duration_s < first.after.duration_s;
+    if found.certified && sooner {
+        return Ok((alone, found));
+    }
+    // What was written last is delivered.
+    Ok((how, run(how)?))
 }
 
 struct Search<'a> {

@@ -71,6 +71,7 @@ impl Job<'_> {
     ) -> Result<Attempt, Failure> {
         let mut rungs = Lower::default();
         let mut ladder = None;
+        let mut progress = Progress::default();
         let mut has_rows = !again || rows.is_none();
         loop {
             let used = depths.clone();
@@ -85,7 +86,7 @@ impl Job<'_> {
                 paces.learn(std::mem::take(&mut certified.paced), over);
             }
             let mut asked = Lower::default();
-            let mut stuck = false;
+            let (mut stuck, mut in_vain) = (false, false);
             let more = if certified.deeper.is_empty() {
                 let ladder = ladder.get_or_insert_with(|| certified.summary.ladder(self.machine));
                 ladder.take(&certified.summary.lower);
@@ -94,7 +95,8 @@ impl Job<'_> {
                 }
                 !asked.is_empty()
             } else {
-                stuck = !depths.deepen(&certified.deeper);
+                in_vain = written.reasons.count > 0 && progress.stands_still(&certified);
+                stuck = in_vain || !depths.deepen(&certified.deeper);
                 !stuck
             };
             if more || !has_rows {
@@ -120,7 +122,7 @@ impl Job<'_> {
                 ..
             } = *self;
             let mut summary = conclude(machine, target, paths, how, written, certified);
-            if stuck {
+            if stuck && !in_vain {
                 summary.reasons.push(last_round(&depths, how.allowed));
             }
             let paces = depths.paces().cloned();
@@ -203,6 +205,32 @@ impl Job<'_> {
             source,
             rows.as_mut().map(|rows| as_sink(&mut **rows)),
         )
+    }
+}
+
+/// Whether rounds still change anything: of a program that stays as it is anyway, since some of its
+/// blocks may not be changed, they say no more then.
+#[derive(Default)]
+struct Progress {
+    last: Option<(usize, u64, f64)>,
+    /// Rounds in a row that came to the same.
+    idle: u32,
+}
+
+impl Progress {
+    /// Rounds that have to come to the same: the first steps deeper may ask for nothing more.
+    const IDLE: u32 = 3;
+
+    fn stands_still(&mut self, certified: &Certified) -> bool {
+        let reasons = certified.reasons.count;
+        let now = (
+            certified.deeper.len(),
+            reasons,
+            certified.summary.duration_s,
+        );
+        let same = self.last.replace(now) == Some(now);
+        self.idle = if same { self.idle + 1 } else { 0 };
+        self.idle >= Self::IDLE
     }
 }
 
