@@ -5,6 +5,7 @@ use gwatt::machine::{AXES, CornerAngle, CornerRule, LookAhead};
 
 fn rule(corner: CornerRule) -> LookAhead {
     LookAhead {
+        blocks_at_most: None,
         corner,
         blocks: None,
         path_accel_mm_s2: f64::INFINITY,

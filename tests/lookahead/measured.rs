@@ -7,6 +7,7 @@ use std::fmt::Write as _;
 /// Smoothieware: `acceleration`, `junction_deviation` and `planner_queue_size`
 /// of the printer's configuration.
 const RULE: LookAhead = LookAhead {
+    blocks_at_most: None,
     corner: CornerRule::JunctionDeviation {
         deviation_mm: 0.02,
         angle: CornerAngle::Linear,

@@ -12,6 +12,7 @@ use gwatt::power::{Instant, Want};
 
 /// Corners are passed at any speed.
 const FREE: LookAhead = LookAhead {
+    blocks_at_most: None,
     corner: CornerRule::SpeedStep {
         step_mm_s: [f64::INFINITY; AXES],
         same_kind_only: false,

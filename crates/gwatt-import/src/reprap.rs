@@ -137,9 +137,14 @@ fn take(
                 && let Some(value) = log.positive(&word.place, word.text, "a queue")
                 && value >= 2.0
             {
-                // Half of the queue is fixed.
+                // Up to half of the queue is fixed, as time goes.
                 let seen = (0.5 * value - 1.0).floor().max(1.0);
                 found.look_ahead(format!("blocks = {}", shown(seen)), command.source(word));
+                let most = (value - 1.0).floor().max(1.0);
+                found.look_ahead(
+                    format!("blocks_at_most = {}", shown(most)),
+                    command.source(word),
+                );
             }
         }
         "M665" => kinematics::refuse(log, &command.place, "delta (M665)"),

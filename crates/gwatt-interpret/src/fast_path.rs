@@ -74,7 +74,7 @@ impl Control<'_> {
         };
 
         // From here on, it happens.
-        (self.moved, self.printer.pending) = (true, !moving.is_empty());
+        (self.moved, self.printer.pending) = (true, *moving);
         steps.push(Step::Move(Move {
             line,
             number: block.number.map(|word| word.value),

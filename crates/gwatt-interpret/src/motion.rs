@@ -329,7 +329,8 @@ impl Control<'_> {
             None => Stray::NONE,
         };
         self.moved = true;
-        self.printer.pending = !(moving.is_empty() && unknown_start.is_empty());
+        let commanded = AxisSet(moving.0 | unknown_start.0);
+        self.printer.pending = self.not_queued(arc.is_some(), commanded, length_mm);
         run.steps.push(Step::Move(Move {
             line: run.line,
             number: run.block.number.map(|word| word.value),

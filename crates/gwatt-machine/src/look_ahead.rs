@@ -9,6 +9,9 @@ pub struct LookAhead {
     pub corner: CornerRule,
     /// How many blocks the controller sees ahead; `None`: as many as matter.
     pub blocks: Option<u32>,
+    /// How many it may see, where that is more than `blocks` and a matter of timing: what depends
+    /// on it counts with all that it may be.
+    pub blocks_at_most: Option<u32>,
     /// Acceleration along the path in mm/s², whatever the direction; infinite
     /// where only the axes have limits.
     pub path_accel_mm_s2: f64,

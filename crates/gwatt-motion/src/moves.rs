@@ -29,7 +29,7 @@ impl Step {
     #[must_use]
     pub fn is_note(&self) -> bool {
         matches!(self, Self::Action(action)
-            if matches!(action.kind, ActionKind::Feed | ActionKind::EarlyLimits))
+            if matches!(action.kind, ActionKind::Feed | ActionKind::EarlyLimits(_)))
     }
 }
 
@@ -265,6 +265,17 @@ pub struct Action {
     pub value: f64,
 }
 
+/// What is limited.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum EarlyLimits {
+    /// The acceleration of axes (M201).
+    AxisAccel,
+    /// The acceleration along the path (M204).
+    PathAccel,
+    /// The speed of axes (M203).
+    Speed,
+}
+
 /// The kinds of actions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ActionKind {
@@ -289,9 +300,9 @@ pub enum ActionKind {
     Rest,
     /// Another M word.
     Other,
-    /// Limits of the axes or of the path change, perhaps for the last move before already:
-    /// the factor by which they rise at most.
-    EarlyLimits,
+    /// Limits change, perhaps for the last move before already: the factor by which they rise at
+    /// most for its axes.
+    EarlyLimits(EarlyLimits),
     /// G61, G61.1, G64 (value 61, 61.1, 64).
     PathMode,
     /// The feed mode (the G number), or without a motion a new feed (0): only where

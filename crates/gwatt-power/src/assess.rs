@@ -190,10 +190,12 @@ impl<'m> Assessor<'m> {
                 ahead.stop(self.machine, &self.model, &mut self.observer);
                 ahead.emit(self.machine, &self.model, &mut self.observer, sink);
             }
-            Effect::Unknown if action.kind == ActionKind::EarlyLimits => {
-                ahead.doubt_limits(&self.model, &mut self.observer, action.value);
-            }
-            Effect::Unknown => ahead.doubt(),
+            Effect::Unknown => match action.kind {
+                ActionKind::EarlyLimits(limits) => {
+                    ahead.doubt_limits(&self.model, &mut self.observer, limits, action.value);
+                }
+                _ => ahead.doubt(),
+            },
         }
     }
 

@@ -63,7 +63,7 @@ impl Switched {
             | ActionKind::SpindleCenter
             | ActionKind::ToolLoaded => return Effect::None,
             ActionKind::Stop | ActionKind::End | ActionKind::Rest => return Effect::Stop,
-            ActionKind::ToolChangeInMotion | ActionKind::EarlyLimits => return Effect::Unknown,
+            ActionKind::ToolChangeInMotion | ActionKind::EarlyLimits(_) => return Effect::Unknown,
             ActionKind::Spindle
             | ActionKind::ToolChange
             | ActionKind::Coolant

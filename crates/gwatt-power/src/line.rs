@@ -20,6 +20,7 @@ const BESIDE_MM: f64 = 3e-6;
 
 /// Straight on every joint is passed at the speed of the slower block.
 const STRAIGHT_ON: LookAhead = LookAhead {
+    blocks_at_most: None,
     corner: CornerRule::JunctionDeviation {
         deviation_mm: 1.0,
         angle: CornerAngle::AllAxes,

@@ -330,6 +330,7 @@ mod tests {
                 rests: false,
                 overlap_s: 0.0,
                 overlaps: false,
+                ranged: false,
                 late_mm_s: 0.0,
                 slack: Slack::default(),
             };
@@ -396,6 +397,7 @@ mod tests {
                 rests: false,
                 overlap_s: 0.0,
                 overlaps: false,
+                ranged: false,
                 late_mm_s: 0.0,
                 slack: Slack::default(),
             };

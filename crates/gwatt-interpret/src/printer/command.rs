@@ -1,13 +1,13 @@
 //! What a command does: which of its readers takes it, in which order.
 
+use super::early::rises;
 use super::line::{Head, Parameters, Text, has, value};
 use super::verify_checksum;
 use crate::code::{GCode, Motion};
 use crate::control::{Control, Run};
-use crate::knob::KnobState;
 use crate::report::Report;
 use crate::tools::ToolLength;
-use gwatt_machine::{Command, ExtruderMode, Machine};
+use gwatt_machine::{Command, ExtruderMode};
 use gwatt_motion::{ActionKind, Step};
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, Word};
@@ -29,15 +29,15 @@ impl Control<'_> {
         }
         for index in 0..COMMANDS {
             let so_far = run.steps.len();
-            let early =
-                self.printer.pending && self.machine.controller.language.printer.early_limits;
+            let pending = self.printer.pending;
+            let acts_early = self.machine.controller.language.printer.early_limits;
+            let early = !pending.is_empty() && acts_early;
             let limits = early.then(|| self.knobs.clone());
             let next = self.one_command(run, text, index > 0);
             if let Some(before) = limits.filter(|before| *before != self.knobs) {
-                run.act(
-                    ActionKind::EarlyLimits,
-                    rise(self.machine, &before, &self.knobs),
-                );
+                for (limits, factor) in rises(self.machine, pending, &before, &self.knobs) {
+                    run.act(ActionKind::EarlyLimits(limits), factor);
+                }
             }
             let moves = |steps: &[Step]| steps.iter().any(|step| matches!(step, Step::Move(_)));
             let (earlier, own) = run.steps.split_at_checked(so_far).unwrap_or_default();
@@ -420,28 +420,6 @@ fn flags_of_a_move(run: &mut Run<'_, '_>, parameters: &Parameters) {
             .error("missing-number", message, parameter.span)
             .help("write the number right after the letter, as in `X12.5`");
     }
-}
-
-/// By what factor limits of acceleration or of speed rise at most.
-fn rise(machine: &Machine, before: &KnobState, after: &KnobState) -> f64 {
-    let pairs = [
-        (&before.feed_accel_mm_s2[..], &after.feed_accel_mm_s2[..]),
-        (&before.rapid_accel_mm_s2[..], &after.rapid_accel_mm_s2[..]),
-        (&before.path_accel_mm_s2[..], &after.path_accel_mm_s2[..]),
-    ];
-    let accels = pairs.into_iter().flat_map(|(before, after)| {
-        let both = before.iter().zip(after);
-        both.filter(|(before, _)| **before > 0.0 && before.is_finite())
-            .map(|(before, after)| after / before)
-    });
-    let speeds = machine.axis_set.iter().map(|axis| {
-        // Infinite is the machine's own.
-        let own = machine.axes[axis].map_or(f64::INFINITY, |axis| axis.rapid_mm_s);
-        let [before, after] = [before, after].map(|it| it.speed_mm_s[axis]);
-        let cap = |speed: f64| if speed.is_finite() { speed } else { own };
-        cap(after) / cap(before)
-    });
-    accels.chain(speeds).fold(1.0, f64::max)
 }
 
 /// What is known to be left out of the estimate.

@@ -3,6 +3,7 @@
 use super::is_command;
 use crate::control::{Control, Language, Run};
 use crate::report::Report;
+use gwatt_machine::AxisSet;
 use gwatt_syntax::Block;
 
 /// Marlin and similar firmware.
@@ -23,7 +24,7 @@ impl Language for PrinterLanguage {
         let mut words = run.block.words.iter();
         if words.any(|word| word.letter == b'G' && (0.0..4.0).contains(&word.value)) {
             // It is read once the move before it is in the queue.
-            control.printer.pending = false;
+            control.printer.pending = AxisSet::default();
         }
     }
 

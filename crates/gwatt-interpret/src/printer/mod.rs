@@ -9,6 +9,7 @@
 pub(super) mod language;
 mod arc;
 mod command;
+mod early;
 mod heat;
 mod kept;
 mod line;
@@ -49,8 +50,8 @@ pub(super) struct State {
     kept_feed_factor: f64,
     /// M221 as a factor.
     flow: f64,
-    /// A move may not be in the queue yet.
-    pub(super) pending: bool,
+    /// Axes of a move that may not be in the queue yet.
+    pub(super) pending: AxisSet,
     /// M200: length of filament for one unit of E.
     volumetric: f64,
     /// M205 S and T: smallest speeds of moves that extrude, and of others.
@@ -90,7 +91,7 @@ impl State {
             feed_factor: 1.0,
             kept_feed_factor: 1.0,
             flow: 1.0,
-            pending: false,
+            pending: AxisSet::default(),
             volumetric: 1.0,
             least_mm_s: [0.0; 2],
             retract: language.printer.retract,

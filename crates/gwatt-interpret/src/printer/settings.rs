@@ -384,35 +384,65 @@ impl Control<'_> {
 #[cfg(test)]
 mod tests {
     use crate::printer::testing::execute;
-    use gwatt_motion::{ActionKind, Step};
+    use gwatt_motion::EarlyLimits::{AxisAccel, PathAccel, Speed};
+    use gwatt_motion::{ActionKind, EarlyLimits, Step};
 
-    /// The factors of limits that may act early, on RepRapFirmware.
-    fn early(lines: &[&str]) -> Vec<f64> {
-        let (steps, _) = execute("reprap", "", lines);
+    /// The limits that may act early, with their factors, on RepRapFirmware.
+    fn early(lines: &[&str]) -> Vec<(EarlyLimits, f64)> {
+        let y = "[axes.Y]\nrapid_mm_min = 6000\naccel_mm_s2 = 500\nmass_kg = 5\n";
+        let (steps, found) = execute("reprap", y, lines);
+        assert_eq!(found.errors, 0, "{:?}", found.list);
         let actions = steps.iter().filter_map(|step| match step {
             Step::Action(action) => Some(action),
             Step::Move(_) => None,
         });
-        let early = actions.filter(|action| action.kind == ActionKind::EarlyLimits);
-        early.map(|action| action.value).collect()
+        let early = actions.filter_map(|action| match action.kind {
+            ActionKind::EarlyLimits(limits) => Some((limits, action.value)),
+            _ => None,
+        });
+        early.collect()
     }
 
     #[test]
     fn a_line_with_a_motion_word_keeps_limits_off_the_move_before() {
         // Nothing has moved yet; the same again changes nothing.
-        assert_eq!(early(&["M201 X400", "G1 X1 F60", "M201 X400"]), [0.0; 0]);
-        assert_eq!(early(&["G1 X1 F60", "M201 X1000"]), [2.0]);
-        assert_eq!(early(&["G1 X1 F60", "M204 P100", "M201 X250"]), [1.0, 1.0]);
+        assert_eq!(early(&["M201 X400", "G1 X1 F60", "M201 X400"]), []);
+        assert_eq!(early(&["G1 X1 F60", "M201 X1000"]), [(AxisAccel, 2.0)]);
+        assert_eq!(
+            early(&["G1 X1 F60", "M204 P100", "M201 X250"]),
+            [(PathAccel, 1.0), (AxisAccel, 1.0)]
+        );
         for barrier in ["G1", "G1 F60", "G0", "N7 G1 ; wait"] {
             assert_eq!(
                 early(&["G1 X1 F60", barrier, "M201 X1000"]),
-                [0.0; 0],
+                [],
                 "{barrier}"
             );
         }
-        assert_eq!(early(&["G1 X1 F60", "G1", "G1 X2", "M203 X600"]), [1.0]);
+        assert_eq!(
+            early(&["G1 X1 F60", "G1", "G1 X2", "M203 X600"]),
+            [(Speed, 1.0)]
+        );
         // The machine's own 6000 mm/min, and three times as much.
-        assert_eq!(early(&["M203 X600", "G1 X1 F60", "M203 X18000"]), [30.0]);
-        assert_eq!(early(&["G1 X1 F60", "M203 X18000"]), [3.0]);
+        assert_eq!(
+            early(&["M203 X600", "G1 X1 F60", "M203 X18000"]),
+            [(Speed, 30.0)]
+        );
+        assert_eq!(early(&["G1 X1 F60", "M203 X18000"]), [(Speed, 3.0)]);
+    }
+
+    #[test]
+    fn limits_of_axes_that_stand_and_words_after_an_arc_do_not_act_early() {
+        assert_eq!(early(&["G1 X1 F60", "M201 Y1000", "M203 Y18000"]), []);
+        assert_eq!(
+            early(&["M204 P100", "G1 X1 F60", "M204 P1000"]),
+            [(PathAccel, 10.0)]
+        );
+        // Its chords, of at most 1 mm, are all in the queue before the word is read.
+        assert_eq!(early(&["G2 X20 Y0 I10 J0 F60", "M201 X1000"]), []);
+        assert_eq!(
+            early(&["G2 X0.5 Y0 I0.25 J0 F60", "M201 X1000"]),
+            [(AxisAccel, 2.0)]
+        );
     }
 }

@@ -19,6 +19,8 @@ use crate::look_ahead::{ChordRule, CornerAngle, CornerRule, LookAhead};
 pub(crate) struct LookAheadTable {
     /// How many blocks the controller sees ahead; default as many as matter.
     pub(crate) blocks: Option<AtLeastOne>,
+    /// How many it may see, where that is a matter of timing; default `blocks`.
+    pub(crate) blocks_at_most: Option<AtLeastOne>,
     /// Acceleration along the path whatever the direction; default none but
     /// the axes' own.
     pub(crate) path_accel_mm_s2: Option<Positive>,
@@ -144,6 +146,7 @@ pub(crate) fn look_ahead(
     let bare = LookAhead {
         corner,
         blocks: None,
+        blocks_at_most: None,
         path_accel_mm_s2: f64::INFINITY,
         min_cruise_ratio: 0.0,
         chords: None,
@@ -179,6 +182,10 @@ fn with(table: &LookAheadTable, rules: LookAhead) -> LookAhead {
             .blocks
             .as_ref()
             .map_or(rules.blocks, |it| Some(it.value as u32)),
+        blocks_at_most: table
+            .blocks_at_most
+            .as_ref()
+            .map_or(rules.blocks_at_most, |it| Some(it.value as u32)),
         path_accel_mm_s2: or(table.path_accel_mm_s2.as_ref(), rules.path_accel_mm_s2),
         min_cruise_ratio: or(table.min_cruise_ratio.as_ref(), rules.min_cruise_ratio),
         chords: match &table.chords {

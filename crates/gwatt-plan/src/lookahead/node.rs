@@ -113,6 +113,9 @@ pub(super) struct Span<P> {
     pub accel: f64,
     /// False where the count limit cut the look-ahead short.
     pub certain: bool,
+    /// It may run slower, and be sped up and braked at any lower speed, as how many blocks the
+    /// controller sees is a matter of timing.
+    pub ranged: bool,
     /// Its part of an S-curve, where jerk is limited.
     pub section: Option<Section>,
     pub payload: P,

@@ -72,6 +72,9 @@ pub struct Planned<T> {
     /// bound applies. So it is where its rule is not modelled, and where more
     /// elements were open than the window holds.
     pub certain: bool,
+    /// True where it may run slower, and be sped up and braked at any lower speed: how many blocks the
+    /// controller sees is a matter of timing.
+    pub ranged: bool,
     /// True where it ends at rest even if it is not certain, since the rules stop
     /// there. `LinuxCNC`'s say so; with others it is false.
     pub rests: bool,
@@ -207,6 +210,7 @@ impl<T> Planned<T> {
             accel_mm_s2: span.accel,
             section: span.section,
             certain: span.certain && span.payload.certain,
+            ranged: span.ranged,
             rests: span.payload.rests,
             overlap_s: span.payload.overlap_s,
             overlaps: span.payload.overlaps,

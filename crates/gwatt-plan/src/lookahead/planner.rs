@@ -52,7 +52,8 @@ impl<T: Copy> PathPlanner<T> {
     pub fn new(machine: &Machine, look_ahead: LookAhead) -> Self {
         let mut axes = machine.axes.iter().flatten();
         let has_jerk = axes.any(|axis| axis.jerk_mm_s3 > 0.0);
-        let mut window = Window::new(look_ahead.blocks, smooths(&look_ahead));
+        let mut window = Window::new(look_ahead.blocks, smooths(&look_ahead))
+            .seeing_up_to(look_ahead.blocks_at_most);
         let rule = if let CornerRule::LinuxCnc {
             cycle_s,
             kink_ratio,

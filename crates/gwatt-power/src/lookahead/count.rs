@@ -76,12 +76,13 @@ impl Ahead {
         }
         if peaks {
             let late = self.late(model, planned);
+            let ranged = self.ranged(model, observer, planned);
             let surge = self.surge(model, observer, planned);
             let Some(open) = self.open.get_mut(number) else {
                 return;
             };
-            if let Some(late) = late {
-                open.assessment.demand.include(&late);
+            for demand in late.iter().chain(&ranged) {
+                open.assessment.demand.include(demand);
                 open.in_turn = false;
             }
             if let Some(surge) = surge {
@@ -180,8 +181,11 @@ impl Ahead {
         }
         self.ride(model, observer, planned, peaks, times);
         let late = peaks.then(|| self.late(model, planned)).flatten();
-        if let Some(late) = &late {
-            demand.include(late);
+        let ranged = peaks
+            .then(|| self.ranged(model, observer, planned))
+            .flatten();
+        for one in late.iter().chain(&ranged) {
+            demand.include(one);
         }
         if peaks {
             if let Some(surge) = self.surge(model, observer, planned) {
@@ -195,7 +199,7 @@ impl Ahead {
             }
         }
         let certain = !peaks || self.is_certain(planned, from, to);
-        let certain = (certain, late.is_none());
+        let certain = (certain, late.is_none() && ranged.is_none());
         self.share_out(planned, demand, certain, [peaks, times]);
     }
 

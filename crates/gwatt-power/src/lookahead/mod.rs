@@ -21,6 +21,7 @@ mod joints;
 mod open;
 mod pace;
 mod queue;
+mod ranged;
 mod runs;
 mod surges;
 
@@ -33,7 +34,7 @@ use super::robust::Extremes;
 use super::steps::Steps;
 use constant_speed::Glider;
 use gwatt_machine::{AXES, AxisValues, LookAhead, Machine, PathMode};
-use gwatt_motion::{Move, MoveKind};
+use gwatt_motion::{EarlyLimits, Move, MoveKind};
 use gwatt_plan::Overrides;
 use gwatt_plan::lookahead::{Element, PathPlanner};
 use queue::Queue;
@@ -316,9 +317,15 @@ impl Ahead {
         self.in_doubt |= !(self.at_rest || self.rests());
     }
 
-    /// New limits may hold for the last move already: they may be higher by this factor, and
-    /// it may be as fast as F asks.
-    pub fn doubt_limits(&mut self, model: &PowerModel, observer: &mut Observer, factor: f64) {
+    /// New limits may hold for the last move already: they may be higher by this factor. With those
+    /// of speed it may be as fast as F asks.
+    pub fn doubt_limits(
+        &mut self,
+        model: &PowerModel,
+        observer: &mut Observer,
+        limits: EarlyLimits,
+        factor: f64,
+    ) {
         if self.at_rest || self.rests() {
             return;
         }
@@ -326,10 +333,16 @@ impl Ahead {
         self.brake_in_doubt(model, observer);
         if let Some(last) = self.open.back_mut() {
             let mut early = last.at_most().clone();
-            early.accel_mm_s2 = early.accel_mm_s2.map(|limit| factor * limit);
-            early.path_accel_mm_s2 *= factor;
-            early.rapid_factor = factor * early.rapid_factor.max(1.0);
-            early.feed_mm_s *= std::mem::replace(&mut early.feed_excess, 1.0);
+            match limits {
+                EarlyLimits::AxisAccel => {
+                    early.accel_mm_s2 = early.accel_mm_s2.map(|limit| factor * limit);
+                }
+                EarlyLimits::PathAccel => early.path_accel_mm_s2 *= factor,
+                EarlyLimits::Speed => {
+                    early.rapid_factor = factor * early.rapid_factor.max(1.0);
+                    early.feed_mm_s *= std::mem::replace(&mut early.feed_excess, 1.0);
+                }
+            }
             last.early = Some(Box::new(early));
         }
     }

@@ -351,7 +351,7 @@ impl Ahead {
 
     /// Holds what a piece may do at lower overrides against limits over time, where there are
     /// any; `longer`: from a lower speed its ramps may last longer.
-    fn watch_surge(
+    pub(super) fn watch_surge(
         &mut self,
         model: &PowerModel,
         observer: &Observer,

@@ -459,6 +459,7 @@ impl Current {
             length: element.length,
             accel,
             certain: self.certain,
+            ranged: false,
             section: Some(section),
             payload: element.payload,
         }

@@ -10,16 +10,17 @@ impl<P: Copy> Window<P> {
         self.runs.is_none()
     }
 
-    /// How many elements a controller sees, if that is bounded.
+    /// How many elements a controller surely sees, if that is bounded.
     pub fn blocks(&self) -> Option<usize> {
-        self.blocks
+        self.sure_blocks.or(self.blocks)
     }
 
     /// The elements that are open, if the motion has the largest speed of all of
     /// them and of the joints between, and that speed, squared.
     pub fn gliding(&self) -> Option<(f64, &VecDeque<Node<P>>)> {
         let speed2 = self.now2;
-        if self.ready > 0 || speed2 == 0.0 {
+        let unsure = self.sure_blocks.is_some() && self.low2 < speed2;
+        if self.ready > 0 || speed2 == 0.0 || unsure {
             return None;
         }
         let glides = self.nodes.iter().enumerate().all(|(index, node)| {
@@ -34,7 +35,7 @@ impl<P: Copy> Window<P> {
     /// speed, squared.
     pub fn glide_to(&mut self, speed2: f64) {
         self.nodes.clear();
-        self.now2 = speed2;
+        (self.now2, self.low2) = (speed2, speed2);
         self.settle_at = self.open_min;
     }
 }

@@ -19,7 +19,9 @@
 //!
 //! A controller that sees `n` blocks ahead keeps able to stop within them:
 //! `e[i] ≤ Σ 2·a·L` over the next n, which sums in O(1); and the square of the speed at
-//! which it may leave the last of them, where it knows that more of an arc comes after.
+//! which it may leave the last of them, where it knows that more of an arc comes after. One
+//! that sees from `m` to `n`, as time goes, has speeds between those of both: where they are not
+//! the same, the element is ranged.
 
 mod glide;
 #[cfg(test)]
@@ -29,6 +31,9 @@ use super::node::{Node, OPEN_MAX, Span, lower};
 use std::collections::VecDeque;
 
 use super::runs::Runs;
+
+/// What rounding may make of a sum of squared speeds.
+const ROUNDING: f64 = 1.0 + 1e-12;
 
 /// Elements after which a first backward pass is worth its start.
 const OPEN_MIN: usize = 8;
@@ -45,6 +50,11 @@ pub(super) struct Window<P> {
     now2: f64,
     /// The controller's own look-ahead.
     blocks: Option<usize>,
+    /// What it surely sees, where it may see less than that: how many blocks is then a matter of
+    /// timing.
+    sure_blocks: Option<usize>,
+    /// The lowest speed at which the first one starts, whatever it sees, squared.
+    low2: f64,
     /// Hills are smoothed: `Node::smooth_accel` counts.
     smooth: bool,
     /// The speeds at joints are final as they come.
@@ -64,6 +74,8 @@ impl<P: Copy> Window<P> {
             settle_at: OPEN_MIN,
             now2: 0.0,
             blocks: blocks.map(|blocks| blocks.max(1) as usize),
+            sure_blocks: None,
+            low2: 0.0,
             smooth,
             given: false,
             open_min: OPEN_MIN,
@@ -72,11 +84,21 @@ impl<P: Copy> Window<P> {
         }
     }
 
+    /// The same where the controller may see up to `most` blocks: elements whose speeds depend on how
+    /// many it sees are ranged.
+    pub fn seeing_up_to(mut self, most: Option<u32>) -> Self {
+        if let (Some(fewest), Some(most)) = (self.blocks, most) {
+            self.sure_blocks = Some(fewest);
+            self.blocks = Some(fewest.max(most as usize));
+        }
+        self
+    }
+
     /// The same where the speed at the start of each element is final as it comes: from
     /// there on the motion can come to all that follow.
     pub fn given(mut self) -> Self {
         self.given = true;
-        self.blocks = None;
+        (self.blocks, self.sure_blocks) = (None, None);
         self
     }
 
@@ -84,7 +106,7 @@ impl<P: Copy> Window<P> {
     /// smoothed hills is not known. `renewed`: elements after one over which the controller
     /// surely plans its speeds again as these come, if not over all.
     pub fn with_jerk(mut self, renewed: Option<usize>) -> Self {
-        let mut runs = Runs::new(self.blocks, !self.smooth);
+        let mut runs = Runs::new(self.blocks, !self.smooth && self.sure_blocks.is_none());
         if let Some(elements) = renewed {
             runs = runs.renewing(elements);
         }
@@ -292,7 +314,7 @@ impl<P: Copy> Window<P> {
         }
         let (end2, seen2) = match self.nodes.get(1) {
             Some(next) => {
-                let cap2 = lower(next.e2, self.rest2(1));
+                let cap2 = lower(next.e2, self.rest2(1, self.blocks));
                 (lower(cap2, next.hill2), next.seen2)
             }
             None => (0.0, 0.0),
@@ -316,6 +338,12 @@ impl<P: Copy> Window<P> {
         if !node.overruns {
             top2 = higher(top2, start2);
         }
+        // The same with the blocks that it surely sees.
+        let low2 = if self.now2 == 0.0 { start2 } else { self.low2 };
+        let low_end2 = match self.sure_blocks {
+            Some(_) => lower(low2 + ramp2, self.rest2(1, self.sure_blocks) * ROUNDING),
+            None => end2,
+        };
         let span = Span {
             start2,
             end2,
@@ -323,12 +351,14 @@ impl<P: Copy> Window<P> {
             length: node.length,
             accel: node.accel,
             certain: !node.forced,
+            ranged: low2 < start2 || low_end2 < end2,
             section: None,
             payload: node.payload,
         };
         self.nodes.pop_front();
         self.ready -= 1;
         self.now2 = end2;
+        self.low2 = lower(low_end2, end2);
         Some(span)
     }
 
@@ -339,14 +369,14 @@ impl<P: Copy> Window<P> {
         let (Some(node), Some(last)) = (self.nodes.get(i), self.nodes.back()) else {
             return false;
         };
-        last.run != node.run || last.sum - node.sum + last.ramp2() >= self.rest2(i)
+        last.run != node.run || last.sum - node.sum + last.ramp2() >= self.rest2(i, self.blocks)
     }
 
     /// Speed, squared, from which the controller can stop within the blocks
     /// that it sees from element `i` on; infinite where it sees enough.
     #[inline]
-    fn rest2(&self, i: usize) -> f64 {
-        let Some(blocks) = self.blocks else {
+    fn rest2(&self, i: usize, blocks: Option<usize>) -> f64 {
+        let Some(blocks) = blocks else {
             return f64::INFINITY;
         };
         let Some(first) = self.nodes.get(i) else {

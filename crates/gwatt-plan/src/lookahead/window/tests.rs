@@ -35,7 +35,15 @@ fn run(
     open_min: usize,
     open_max: usize,
 ) -> (Vec<Span<usize>>, usize) {
-    let mut window = Window::new(blocks, smooth);
+    run_in(Window::new(blocks, smooth), nodes, open_min, open_max)
+}
+
+fn run_in(
+    mut window: Window<usize>,
+    nodes: &[Node<usize>],
+    open_min: usize,
+    open_max: usize,
+) -> (Vec<Span<usize>>, usize) {
     (window.open_min, window.settle_at, window.open_max) = (open_min, open_min, open_max);
     let mut spans = Vec::new();
     let mut held = 0;
@@ -132,6 +140,37 @@ fn a_controller_can_always_stop_within_the_blocks_it_sees() {
             bound |= spans[i].start2 >= most * (1.0 - 1e-9) && most > 0.0;
         }
         assert!(bound, "{blocks} never mattered");
+    }
+}
+
+/// A controller that sees more or fewer blocks, as time goes, has the same speeds save in ranged
+/// elements, and none above those with the most.
+#[test]
+fn what_depends_on_how_many_blocks_are_seen_is_ranged() {
+    let mut nodes = nodes(9, 5000, 0.01);
+    for node in &mut nodes {
+        node.length *= 0.02;
+    }
+    for (fewest, most) in [(1, 4), (3, 9), (12, 20)] {
+        let window = || Window::new(Some(fewest), false).seeing_up_to(Some(most));
+        let (ranged, _) = run_in(window(), &nodes, 24, usize::MAX);
+        let (whole, _) = run_in(window(), &nodes, usize::MAX, usize::MAX);
+        assert_eq!(figures(&ranged), figures(&whole));
+        let same = ranged.iter().filter(|span| span.certain).count();
+        assert!(
+            certain > 500 && certain < 4900,
+            "{fewest} {most}: {certain}"
+        );
+        for blocks in fewest..=most {
+            let (plan, _) = run(&nodes, Some(blocks), false, 24, usize::MAX);
+            for (i, (span, other)) in ranged.iter().zip(&plan).enumerate() {
+                for (high, there) in [(span.start2, other.start2), (span.end2, other.end2)] {
+                    assert!(there <= high * (1.0 + 1e-9), "{i}");
+                    let same = (there - high).abs() <= 1e-9 * high;
+                    assert!(same || span.ranged, "{i}: {there} {high}");
+                }
+            }
+        }
     }
 }
 
