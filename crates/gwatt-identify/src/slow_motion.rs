@@ -193,7 +193,7 @@ impl Slow {
     /// them.
     fn solved(&self, speed: &Speed, is_summed: bool) -> Option<SlowMotion> {
         let t = self.period_s;
-        let slow = in_band(&between(&speed.plain, mean_speed), t);
+        let slow = in_band(&speed.means(), t);
         let signs = in_band(&between(&speed.smooth, mean_sign), t);
         let fastest = slow.iter().fold(0.0_f64, |most, v| v.abs().max(most));
         let band_hz = SLOW_HZ.min(SLOW_SHARE / t);
