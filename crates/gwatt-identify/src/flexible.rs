@@ -368,7 +368,7 @@ fn describe(
     Ok(Flexible {
         fitted_delay_s,
         // One that may be of any size, or negative, is no figure.
-        inertia: (prepared.is_force && sign_is_sure).then(|| Figure {
+        inertia: (prepared.is_force && (sign_is_sure || !found.has_errors)).then(|| Figure {
             value: 1.0 / gain,
             std: std(0) / (gain * gain),
         }),

@@ -168,7 +168,7 @@ impl Rubbing {
 impl Term {
     fn input(self, speed: &Speed) -> Vec<f64> {
         match self {
-            Self::Viscous => speed.means(),
+            Self::Viscous => speed.means().to_vec(),
             Self::Coulomb => between(&speed.smooth, mean_sign),
             Self::Drift => {
                 let samples = speed.plain.len();

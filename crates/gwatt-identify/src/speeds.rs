@@ -37,9 +37,9 @@ impl Speed {
 
     /// What viscous friction goes with: means from each sample to the next one. What noise
     /// adds is little next to what it adds to the acceleration.
-    pub(super) fn means(&self) -> Vec<f64> {
-        let means = self.means.as_deref().cloned();
-        means.unwrap_or_else(|| between(&self.plain, mean_speed))
+    pub(super) fn means(&self) -> Arc<Vec<f64>> {
+        let means = self.means.clone();
+        means.unwrap_or_else(|| Arc::new(between(&self.plain, mean_speed)))
     }
 }
 
