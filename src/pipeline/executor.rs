@@ -11,7 +11,9 @@ use super::line_count::LineCount;
 use super::line_key::LineKey;
 use super::{Failure, Options};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::interpret::{Diagnostics, Effects, Facts, Flow, Interpreter, Move, Reading, Step};
+use crate::interpret::{
+    ActionKind, Diagnostics, Effects, Facts, Flow, Interpreter, Move, Reading, Step,
+};
 use crate::machine::Machine;
 use crate::source::{LineReader, SourceError};
 use crate::syntax::{Block, FOREIGN_BYTES, foreign, scan_line};
@@ -59,6 +61,8 @@ pub(super) struct Executor<'m, R> {
     pub(super) lines: u64,
     /// How many of them did something.
     executed: u64,
+    /// How many of these did no more than end the program.
+    ended: u64,
     /// The program, once it has to be held whole.
     flow: Option<Box<Flow>>,
     /// What is wrong with the flow: nothing more is executed.
@@ -83,6 +87,7 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
             facts: Facts::default(),
             lines: 0,
             executed: 0,
+            ended: 0,
             flow: None,
             stuck: false,
             count: options.count.clone(),
@@ -133,7 +138,7 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
             &mut self.block,
             Effects::new(&mut self.steps, &mut self.facts, &mut self.diagnostics),
         );
-        self.executed += u64::from(self.facts.executed);
+        self.count_executed();
         if number.is_multiple_of(LineCount::AT_ONCE) {
             self.count(LineCount::AT_ONCE);
         }
@@ -227,7 +232,7 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
         for found in self.diagnostics.list.iter_mut().skip(said) {
             found.file = flow.file().map(str::to_owned);
         }
-        self.executed += u64::from(self.facts.executed);
+        self.count_executed();
         Ok(self.conclude(run))
     }
 
@@ -258,12 +263,24 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
         })
     }
 
+    /// Counts the line if it did something.
+    #[inline]
+    fn count_executed(&mut self) {
+        if self.facts.executed {
+            self.executed += 1;
+            let ends =
+                matches!(&self.steps[..], [Step::Action(action)] if action.kind == ActionKind::End);
+            self.ended += u64::from(ends);
+        }
+    }
+
     /// The warnings and notes of a run without errors.
     pub(super) fn finish(mut self) -> Result<Vec<Diagnostic>, Failure> {
         let uncalled = self.interpreter.is_uncalled();
-        if (self.executed == 0 || uncalled) && self.diagnostics.errors == 0 {
-            let flow = self.flow.as_deref();
-            let subs = uncalled || flow.is_some_and(Flow::holds_subprograms);
+        let flow = self.flow.as_deref();
+        let subs = uncalled || flow.is_some_and(Flow::holds_subprograms);
+        let idle = self.executed == 0 || uncalled || subs && self.executed == self.ended;
+        if idle && self.diagnostics.errors == 0 {
             self.diagnostics.push(nothing_done(subs));
         }
         if self.executed > 0 && self.diagnostics.errors == 0 && self.interpreter.assumes_unit() {

@@ -34,7 +34,7 @@ pub struct Flexible {
     /// The model, from force to acceleration (from commanded to real
     /// acceleration where the command is the input).
     pub transfer: TransferFunction,
-    /// Inertia or mass: 1/gain. Absent from a command.
+    /// Inertia or mass: 1/gain. Absent from a command, and where not even its sign is known.
     pub inertia: Option<Figure>,
     /// Anti-resonances: zeros that make a dip.
     pub zeros: Vec<Root>,
@@ -367,7 +367,8 @@ fn describe(
     transfer.delay_s = (fitted_delay_s - prepared.early_s).max(0.0);
     Ok(Flexible {
         fitted_delay_s,
-        inertia: prepared.is_force.then(|| Figure {
+        // One that may be of any size, or negative, is no figure.
+        inertia: (prepared.is_force && (sign_is_sure || !found.has_errors)).then(|| Figure {
             value: 1.0 / gain,
             std: std(0) / (gain * gain),
         }),

@@ -69,6 +69,9 @@ impl Judgement {
 impl fmt::Display for Judgement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::ExciteLonger { times } if *times > TIMES_MAX => f.write_str(
+                "excite longer: no length that one records is enough; excite with more amplitude, or with more power where the axis resonates",
+            ),
             Self::ExciteLonger { times } => write!(
                 f,
                 "excite longer: about {times:.0} times as long, or with more amplitude"
@@ -241,7 +244,11 @@ pub fn flexible(axis: &Flexible) -> Judgement {
             .map(|root| excess(part(root), limit))
             .fold(0.0, f64::max)
     };
-    let inertia = axis.inertia.map_or(0.0, |j| excess(j, MASS));
+    let inertia = if axis.sign_is_sure {
+        axis.inertia.map_or(0.0, |j| excess(j, MASS))
+    } else {
+        f64::INFINITY
+    };
     let frequency = worst(|root| root.omega_rad_s, FREQUENCY).max(inertia);
     let damping = worst(|root| root.damping, DAMPING);
     let verdict = if damping > TIMES_MAX && frequency <= 1.0 {

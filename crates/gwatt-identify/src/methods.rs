@@ -157,22 +157,24 @@ impl Estimator for Subspaces {
     fn estimate(&self, data: &Data<'_>, prepared: &Prepared, given: Given) -> Option<Modelled> {
         let input = late(data, given);
         let subspace = Subspace::new(&input, data.output)?;
-        let mut best: Option<(f64, TransferFunction)> = None;
+        let fitted = |order: usize, input: &[f64], output: &[f64]| {
+            let model = with_poles(subspace.poles(order)?, input, output)?;
+            continuous(&model, data)
+        };
+        // The poles are those of the first samples: the order shows there too.
+        let head = data.head(CHOSEN);
+        let first = input.get(..head.len()).unwrap_or_default();
+        let mut best: Option<(f64, usize)> = None;
         for order in orders(given) {
-            let transfer = subspace
-                .poles(order)
-                .and_then(|poles| with_poles(poles, &input, data.output))
-                .and_then(|model| continuous(&model, data));
-            if let Some(transfer) = transfer
-                && let Some(estimate) = as_it_is(data, &transfer)
-                && best
-                    .as_ref()
-                    .is_none_or(|(least, _)| estimate.criterion() < *least)
+            if let Some(transfer) = fitted(order, first, head.output)
+                && let Some(estimate) = as_it_is(&head, &transfer)
+                && best.is_none_or(|(least, _)| estimate.criterion() < least)
             {
-                best = Some((estimate.criterion(), transfer));
+                best = Some((estimate.criterion(), order));
             }
         }
-        without_errors(data, prepared, best?.1, given)
+        let transfer = fitted(best?.1, &input, data.output)?;
+        without_errors(data, prepared, transfer, given)
     }
 }
 

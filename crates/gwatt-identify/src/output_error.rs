@@ -21,6 +21,7 @@ use super::figure::Figure;
 use super::normal::{Normal, Solution};
 use super::parameters::{is_admissible, parameters, with};
 use super::sensitivity::{differences, gather};
+use super::slow_motion::in_band;
 use super::transfer::TransferFunction;
 
 const STEPS_MAX: usize = 40;
@@ -78,6 +79,14 @@ pub fn whitened(x: &[f64], taps: &[f64]) -> Vec<f64> {
     out
 }
 
+/// Sum of squares of what of the output is not slow motion: of a position that is nearly all,
+/// and a share of it as large as any mode.
+fn swinging(data: &Data<'_>) -> f64 {
+    let slow = in_band(data.output, data.period_s);
+    let apart = data.output.iter().zip(&slow).map(|(y, slow)| y - slow);
+    apart.map(|y| y * y).sum()
+}
+
 /// The sum of squares that is left when offset and first state fit best.
 fn rest(normal: &Normal, count: usize) -> Option<Solution> {
     (0..4).find_map(|power| {
@@ -110,15 +119,24 @@ pub struct Fitting<'a> {
     taps: &'a [f64],
     /// Sum of squares of the output.
     power: f64,
+    /// Which share of it counts as nothing where models are compared.
+    floor: f64,
 }
 
 impl<'a> Fitting<'a> {
     /// To these signals after the filter of these taps.
     #[must_use]
     pub fn new(raw: Data<'a>, taps: &'a [f64]) -> Self {
+        let power: f64 = raw.output.iter().map(|y| y * y).sum();
+        let floor = if raw.friction.is_empty() {
+            ROUNDING
+        } else {
+            (FRICTION * swinging(&raw) / power).max(ROUNDING)
+        };
         Self {
             signals: (!taps.is_empty()).then(|| Signals::filtered(&raw, |x| whitened(x, taps))),
-            power: raw.output.iter().map(|y| y * y).sum(),
+            power,
+            floor,
             raw,
             taps,
         }
@@ -149,11 +167,7 @@ impl<'a> Fitting<'a> {
             delay_is_free,
             period_s: raw.period_s,
             friction: raw.friction.len(),
-            floor: if raw.friction.is_empty() {
-                ROUNDING
-            } else {
-                FRICTION
-            },
+            floor: self.floor,
             from_command: raw.from_command,
             power: self.power,
             effort,

@@ -43,18 +43,9 @@ pub fn cut_off(signal: &Signal) -> Option<CutOff> {
     const RUN: usize = 3;
     let n = signal.values.len();
     let (low, high) = range(&signal.values);
-    let changes = signal
-        .values
-        .iter()
-        .zip(signal.values.iter().skip(1))
-        .filter(|(a, b)| a != b)
-        .count();
-    let inside = signal
-        .values
-        .iter()
-        .filter(|v| **v != low && **v != high)
-        .count();
-    if changes * 4 < n || inside * 4 < n {
+    let is_end = |v: f64| v == low || v == high;
+    let inside = signal.values.iter().filter(|v| !is_end(**v)).count();
+    if !varies(&signal.values) && !runs_between(&signal.values, is_end, inside) {
         return None;
     }
     let stuck = |level: f64| {
@@ -80,6 +71,29 @@ pub fn cut_off(signal: &Signal) -> Option<CutOff> {
         samples,
         share: (above + below) as f64 / n as f64,
     })
+}
+
+/// Whether a fair part of a signal lies between its ends and changes from sample to sample.
+fn varies(x: &[f64]) -> bool {
+    let (low, high) = range(x);
+    let changes = x.windows(2).filter(|pair| pair.first() != pair.last());
+    let inside = x.iter().filter(|v| **v != low && **v != high);
+    changes.count() * 4 >= x.len() && inside.count() * 4 >= x.len()
+}
+
+/// Whether a signal runs from end to end through many values, of which there are so many: one
+/// of few levels jumps, through a sample or two of its filter.
+fn runs_between(x: &[f64], is_end: impl Fn(f64) -> bool, inside: usize) -> bool {
+    const RUN: usize = 5;
+    const LEAST: f64 = 0.02;
+    let runs = x.split(|v| is_end(*v)).filter(|run| run.len() >= RUN);
+    let (mut samples, mut changes) = (0, 0);
+    for run in runs {
+        samples += run.len();
+        let pairs = run.windows(2);
+        changes += pairs.filter(|pair| pair.first() != pair.last()).count();
+    }
+    inside as f64 >= LEAST * x.len() as f64 && samples * 2 >= inside && changes * 2 >= samples
 }
 
 /// Refuses a signal that is cut off.

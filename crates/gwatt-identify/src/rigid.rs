@@ -156,6 +156,11 @@ pub fn fit_all(
     enough(&all, least)?;
     let solved = solve_best(&mut all, friction).ok_or_else(not_excited)?;
     let (found, lateness_s) = lateness::fitted(&all, friction, &solved);
+    if let Some(Saturation::Recording { limit, share }) = found.saturation
+        && !found.is_known
+    {
+        return Err(saturated(limit, share));
+    }
     let solved = &found.solved;
     let samples = enough(&found.all, solved.terms)?;
     let mass_std = solved.covariance[(0, 0)].sqrt();
@@ -163,6 +168,16 @@ pub fn fit_all(
         return Err(not_excited());
     }
     Ok(described(found, lateness_s, samples, bandwidth_hz))
+}
+
+fn saturated(limit: f64, share: f64) -> IdentifyError {
+    IdentifyError::new(
+        format!(
+            "the force is saturated: {:.0} % of the samples stand at {limit:.4}, the motion shows more, and the rest shows no mass",
+            100.0 * share
+        ),
+        "record with a smaller amplitude or lower accelerations, or with a larger range of the current",
+    )
 }
 
 fn not_excited() -> IdentifyError {

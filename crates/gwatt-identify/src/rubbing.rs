@@ -11,7 +11,7 @@ use super::certainty;
 use super::figure::Figure;
 use super::recording::Recording;
 use super::slow_motion::{SlowMotion, in_band, slow_motion};
-use super::speeds::{Followed, Speed, are_sums, between, mean_sign, mean_speed, speed_of};
+use super::speeds::{Followed, Speed, are_sums, between, mean_sign, speed_of};
 
 /// A term of friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -168,7 +168,7 @@ impl Rubbing {
 impl Term {
     fn input(self, speed: &Speed) -> Vec<f64> {
         match self {
-            Self::Viscous => between(&speed.plain, mean_speed),
+            Self::Viscous => speed.means().to_vec(),
             Self::Coulomb => between(&speed.smooth, mean_sign),
             Self::Drift => {
                 let samples = speed.plain.len();

@@ -165,7 +165,8 @@ fn differences(speed: &[f64], period_s: f64) -> Vec<f64> {
     between(speed, |a, b| (b - a) / period_s)
 }
 
-/// A recording in the slow band, but for the speed.
+/// A recording in the slow band, but for the speed: what of it becomes a row. All samples of
+/// all signals would be many times a long recording.
 struct Slow {
     force: Vec<f64>,
     acceleration: Vec<f64>,
@@ -178,13 +179,23 @@ pub(super) fn in_band(x: &[f64], t: f64) -> Vec<f64> {
     low_pass(x, SLOW_HZ.min(SLOW_SHARE / t), t)
 }
 
+/// The samples of a slow column that become rows: 2.5 a period of the band's end.
+fn thin(x: &[f64], t: f64) -> Vec<f64> {
+    let band_hz = SLOW_HZ.min(SLOW_SHARE / t);
+    let step = ((0.4 / (band_hz * t)) as usize).max(1);
+    let edge = ((1.0 / (band_hz * t)) as usize).min(x.len() / 10);
+    let inner = x.get(edge..x.len().saturating_sub(edge));
+    let kept = inner.unwrap_or_default().iter().step_by(step);
+    kept.copied().collect()
+}
+
 impl Slow {
     fn of(force: &[f64], acceleration: &[f64], period_s: f64) -> Self {
         let acceleration = in_band(acceleration, period_s);
         Self {
-            force: in_band(force, period_s),
-            jerk: derivative(&acceleration, period_s),
-            acceleration,
+            force: thin(&in_band(force, period_s), period_s),
+            jerk: thin(&derivative(&acceleration, period_s), period_s),
+            acceleration: thin(&acceleration, period_s),
             period_s,
         }
     }
@@ -193,23 +204,18 @@ impl Slow {
     /// them.
     fn solved(&self, speed: &Speed, is_summed: bool) -> Option<SlowMotion> {
         let t = self.period_s;
-        let slow = in_band(&between(&speed.plain, mean_speed), t);
-        let signs = in_band(&between(&speed.smooth, mean_sign), t);
+        let slow = in_band(&speed.means(), t);
         let fastest = slow.iter().fold(0.0_f64, |most, v| v.abs().max(most));
-        let band_hz = SLOW_HZ.min(SLOW_SHARE / t);
-        let step = ((0.4 / (band_hz * t)) as usize).max(1);
-        let edge = ((1.0 / (band_hz * t)) as usize).min(slow.len() / 10);
-        let mut rows: Vec<(Vec<f64>, f64)> = (edge..slow.len().saturating_sub(edge))
-            .step_by(step)
-            .filter_map(|k| {
-                let v = *slow.get(k)?;
-                // An axis that stands is held by friction of any size.
-                if v.abs() <= STANDING * fastest {
-                    return None;
-                }
-                let (acceleration, jerk) = (*self.acceleration.get(k)?, *self.jerk.get(k)?);
-                let row = vec![acceleration, v, jerk, 1.0, *signs.get(k)?];
-                Some((row, *self.force.get(k)?))
+        let slow = thin(&slow, t);
+        let signs = thin(&in_band(&between(&speed.smooth, mean_sign), t), t);
+        let moved = slow.iter().zip(&signs);
+        let driven = self.acceleration.iter().zip(&self.jerk).zip(&self.force);
+        let mut rows: Vec<(Vec<f64>, f64)> = moved
+            .zip(driven)
+            // An axis that stands is held by friction of any size.
+            .filter(|((v, _), _)| v.abs() > STANDING * fastest)
+            .map(|((v, sign), ((acceleration, jerk), force))| {
+                (vec![*acceleration, *v, *jerk, 1.0, *sign], *force)
             })
             .collect();
         // Sums of accelerations do not show which way. One way Coulomb friction is as good

@@ -1,5 +1,7 @@
 //! The speed that friction goes with, as recordings of several kinds show it.
 
+use std::sync::Arc;
+
 use super::column::Quantity;
 use super::filter::{derivative, low_pass};
 use super::recording::Recording;
@@ -11,22 +13,33 @@ const SMOOTH_POSITION: [f64; 3] = [0.2, 0.1, 0.05];
 /// Below this frequency force and friction show the speed, above it the acceleration.
 const FOLLOWED_HZ: f64 = 1.0;
 
-/// The speed at each sample.
+/// The speed at each sample. Of a long recording one signal is megabytes: what is the same is
+/// there once.
 #[derive(Debug, Clone)]
 pub(super) struct Speed {
-    /// What viscous friction goes with: what noise adds is little next to what it adds to the
-    /// acceleration.
-    pub(super) plain: Vec<f64>,
+    /// As it was measured, or follows from what was.
+    pub(super) plain: Arc<Vec<f64>>,
     /// What Coulomb friction goes with: noise would turn its sign.
-    pub(super) smooth: Vec<f64>,
+    pub(super) smooth: Arc<Vec<f64>>,
+    /// Means from each sample to the next one, where they are not those of two samples.
+    means: Option<Arc<Vec<f64>>>,
 }
 
 impl Speed {
     pub(super) fn alone(plain: Vec<f64>) -> Self {
+        let plain = Arc::new(plain);
         Self {
-            smooth: plain.clone(),
+            smooth: Arc::clone(&plain),
             plain,
+            means: None,
         }
+    }
+
+    /// What viscous friction goes with: means from each sample to the next one. What noise
+    /// adds is little next to what it adds to the acceleration.
+    pub(super) fn means(&self) -> Arc<Vec<f64>> {
+        let means = self.means.clone();
+        means.unwrap_or_else(|| Arc::new(between(&self.plain, mean_speed)))
     }
 }
 
@@ -36,6 +49,19 @@ pub(super) fn between(x: &[f64], mean: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     let last = x.last().copied();
     let next = x.iter().skip(1).copied().chain(last);
     x.iter().zip(next).map(|(a, b)| mean(*a, b)).collect()
+}
+
+/// Means that are held, as strong as what they are the means of: a swing loses `(ωT)²/24` as
+/// its mean is taken, and as much again as that is held.
+fn as_held(means: &[f64]) -> Vec<f64> {
+    let mut out = means.to_vec();
+    let inner = out.iter_mut().skip(1);
+    for (slot, near) in inner.zip(means.windows(3)) {
+        if let [before, mean, after] = near {
+            *slot = mean - (before - 2.0 * mean + after) / 12.0;
+        }
+    }
+    out
 }
 
 /// The mean of a speed that runs straight from one value to another.
@@ -61,18 +87,25 @@ pub(super) fn speeds(recording: &Recording) -> Vec<Speed> {
     let t = recording.period_s;
     let values = |quantity| recording.get(quantity).map(|signal| &signal.values);
     if let Some(velocity) = values(Quantity::Velocity) {
-        let smoothed = SMOOTH.map(|share| low_pass(velocity, share / t, t));
-        let smoothed = std::iter::once(velocity.clone()).chain(smoothed);
+        let plain = Arc::new(velocity.clone());
+        let smoothed = SMOOTH.map(|share| Arc::new(low_pass(velocity, share / t, t)));
+        let smoothed = std::iter::once(Arc::clone(&plain)).chain(smoothed);
         return smoothed
             .map(|smooth| Speed {
                 smooth,
-                plain: velocity.clone(),
+                plain: Arc::clone(&plain),
+                means: None,
             })
             .collect();
     }
     if let Some(position) = values(Quantity::Position) {
         let smoothed = SMOOTH_POSITION.map(|share| low_pass(position, share / t, t));
-        let speeds = smoothed.map(|position| Speed::alone(derivative(&position, t)));
+        // How far it went is the mean, of fast swings too, which a derivative makes smaller.
+        let means = Arc::new(as_held(&between(position, |a, b| (b - a) / t)));
+        let speeds = smoothed.map(|position| Speed {
+            means: Some(Arc::clone(&means)),
+            ..Speed::alone(derivative(&position, t))
+        });
         return speeds.into();
     }
     let Some(acceleration) = values(Quantity::Acceleration) else {
@@ -153,6 +186,16 @@ mod tests {
         assert_eq!(mean_sign(-1.0, 3.0), 0.5);
         assert_eq!(mean_sign(0.0, 0.0), 0.0);
         assert_eq!(between(&[1.0, 3.0, 5.0], mean_speed), [2.0, 4.0, 5.0]);
+    }
+
+    /// A swing of 1 rad per sample: from 1 to 1 + (2 − 2·cos 1)/12; straight lines stay.
+    #[test]
+    fn what_is_held_is_as_strong_as_it_was() {
+        let swing: Vec<f64> = (0..9).map(|k| libm::cos(f64::from(k))).collect();
+        let held = as_held(&swing);
+        let stronger = 1.0 + (2.0 - 2.0 * libm::cos(1.0)) / 12.0;
+        assert!((held[4] / swing[4] - stronger).abs() < 1e-12);
+        assert_eq!(as_held(&[1.0, 2.0, 3.0, 4.0]), [1.0, 2.0, 3.0, 4.0]);
     }
 
     /// 2 kg with 3 N·s/m and 1 N against a force of 7 N: 2 m/s in the end, though the sensor

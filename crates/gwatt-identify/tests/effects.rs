@@ -2,8 +2,9 @@
 //! friction are right next to it.
 
 use gwatt_identify::effects::{Effect, Saturation};
+use gwatt_identify::flexible::{self, Choice, Method};
 use gwatt_identify::rigid::{self, Rigid};
-use gwatt_identify::{Figure, Judgement, Recording, judgement};
+use gwatt_identify::{Figure, Given, Judgement, Recording, judgement};
 
 use crate::simulated::{Axis, Motion, Random, Sensors, recorded};
 
@@ -129,6 +130,29 @@ fn force_that_is_missing_after_reversals_is_backlash() {
     }
 }
 
+/// The same load without friction of its own: all friction is the motor's.
+#[test]
+fn a_load_without_friction_shows_its_play_too() {
+    let axis = Axis {
+        backlash: Some([0.002, 0.75]),
+        viscous: 0.0,
+        coulomb: 0.0,
+        ..Axis::PLAIN
+    };
+    let motion = Motion::sines(16_000, 0.15, &mut Random(7));
+    let pushed = axis.force(&motion).into_iter().zip(&motion.velocity);
+    let force: Vec<f64> = pushed
+        .map(|(f, v)| f + 300.0 * v + 25.0 * libm::tanh(v / 1e-4))
+        .collect();
+    let recording = recorded(&force, &motion.position, SENSORS, &mut Random(5));
+    let found = rigid::fit_all(&[recording], None, None).unwrap();
+    assert!(
+        matches!(found.effects[..], [Effect::Backlash { .. }]),
+        "{found:?}"
+    );
+    assert_eq!(judgement::rigid(&found), Judgement::Backlash);
+}
+
 fn clipped(force: &[f64], limit: f64) -> Vec<f64> {
     force.iter().map(|f| f.clamp(-limit, limit)).collect()
 }
@@ -158,6 +182,8 @@ fn a_force_that_ends_is_saturated() {
     let above = free.iter().filter(|f| f.abs() >= limit).count() as f64 / 16_000.0;
     assert!((share - above).abs() < 0.01, "{share} {above}");
     assert_eq!(judgement::rigid(&found), Judgement::Saturated);
+    // Mass and friction are those of where it does not end.
+    near(found.mass, 80.0, 0.05);
 
     // A drive that gives no more than 100 N, and a motion that follows from that.
     let wanted: Vec<f64> = free.iter().map(|f| 1.3 * f).collect();
@@ -311,4 +337,37 @@ fn positions_may_count_from_elsewhere() {
         panic!("{:?}", all.effects)
     };
     near(amplitude, 40.0, 0.01);
+}
+
+/// Of a force that stands at its end nearly always nothing is left to find a mass by: no
+/// figures, and the reason.
+#[test]
+fn a_force_that_hardly_leaves_its_end_gives_no_figures() {
+    let motion = Motion::sines(16_000, 0.15, &mut Random(8));
+    let free = Axis::PLAIN.force(&motion);
+    for limit in [20.0, 10.0] {
+        let noise = Sensors {
+            force: 0.0,
+            ..SENSORS
+        };
+        let cut = recorded(
+            &clipped(&free, limit),
+            &motion.position,
+            noise,
+            &mut Random(1),
+        );
+        let refused = rigid::fit_all(std::slice::from_ref(&cut), None, None).unwrap_err();
+        assert!(refused.message.contains("saturated"), "{refused}");
+        assert!(
+            refused.to_string().contains("smaller amplitude"),
+            "{refused}"
+        );
+        let choice = Choice {
+            method: Method::Iv,
+            given: Given::default(),
+            from_command: false,
+        };
+        let refused = flexible::identify(&cut, &choice).unwrap_err();
+        assert!(refused.message.contains("saturated"), "{refused}");
+    }
 }

@@ -1,5 +1,6 @@
 //! Identification from the outside: simulated axes of which all is known.
 
+mod cells;
 mod coverage;
 mod effects;
 mod lateness;
@@ -8,5 +9,6 @@ mod rubbing;
 mod simulated;
 mod sticking;
 mod sweep;
+mod swinging;
 mod tuned;
 mod units;

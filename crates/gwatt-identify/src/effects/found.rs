@@ -24,18 +24,26 @@ pub struct Found {
     pub shapes: Vec<Shape>,
     /// A limit of the force.
     pub saturation: Option<Saturation>,
+    /// False where the force stands at a value so often that the rest shows no mass.
+    pub is_known: bool,
 }
 
 /// Looks for effects, and for a limit of the force that explains more than they do.
 pub fn found(all: &[Equations], asked: Option<Friction>, solved: &Solved) -> Found {
-    let saturation = cut_off(all, asked);
+    if let Some(stands) = cut_off(all, asked, solved) {
+        let is_known = stands.elsewhere.is_some();
+        let elsewhere = stands.elsewhere;
+        let (all, solved) = elsewhere.unwrap_or_else(|| (all.to_vec(), solved.clone()));
+        return Found {
+            saturation: Some(stands.saturation),
+            is_known,
+            ..with_effects(all, asked, solved)
+        };
+    }
     let plain = with_effects(all.to_vec(), asked, solved.clone());
     let left = left_share(&plain.all, &plain.solved);
-    if saturation.is_some() || left <= LEFT {
-        return Found {
-            saturation,
-            ..plain
-        };
+    if left <= LEFT {
+        return plain;
     }
     let Some((limit, solved, all)) = beyond(all, asked, solved) else {
         return plain;
@@ -58,6 +66,7 @@ fn with_effects(all: Vec<Equations>, asked: Option<Friction>, solved: Solved) ->
             solved: settled.solved,
             shapes: settled.shapes,
             saturation: None,
+            is_known: true,
         },
         None => Found {
             all,
@@ -65,6 +74,7 @@ fn with_effects(all: Vec<Equations>, asked: Option<Friction>, solved: Solved) ->
             effects: Vec::new(),
             shapes: Vec::new(),
             saturation: None,
+            is_known: true,
         },
     }
 }

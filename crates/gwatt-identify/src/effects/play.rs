@@ -63,6 +63,11 @@ impl Play {
         Some((squares / times.max(1.0)).sqrt())
     }
 
+    /// Whether anything brakes the load within it.
+    pub fn is_braked(self) -> bool {
+        self.coulomb > 0.0 || self.viscous > 0.0
+    }
+
     fn friction(self, v: f64) -> f64 {
         self.coulomb * sign(v) + self.viscous * v
     }

@@ -143,22 +143,29 @@ fn cogging(all: &[Equations], solved: &Solved) -> Option<Shape> {
     is_periodic.then_some(shape)
 }
 
-/// The play that explains most, with what brakes a load of the whole mass within it.
+/// The play that explains most: what brakes a load of the whole mass brakes it within the
+/// play, or acts on the motor alone, and the load goes on as fast as it was.
 fn backlash(all: &[Equations], solved: &Solved, range: f64) -> Option<Shape> {
     let mass = *solved.theta.first()?;
     let friction = solved.terms.friction_in(&solved.theta)?;
     if mass <= 0.0 {
         return None;
     }
-    let [viscous, coulomb] = friction.map(|friction| (friction / mass).max(0.0));
+    let braked = friction.map(|friction| (friction / mass).max(0.0));
     let plays = PLAYS.map(|share| share * range);
-    sized(all, solved.terms, plays, |width| {
-        Shape::Backlash(Play {
-            width,
-            coulomb,
-            viscous,
-        })
-    })
+    let each = [braked, [0.0; 2]].into_iter().filter_map(|by| {
+        let [viscous, coulomb] = by;
+        let shape = sized(all, solved.terms, plays, |width| {
+            Shape::Backlash(Play {
+                width,
+                coulomb,
+                viscous,
+            })
+        })?;
+        Some((tried(all, solved.terms, shape), shape))
+    });
+    let best = each.min_by(|a, b| a.0.total_cmp(&b.0));
+    best.map(|(_, shape)| shape)
 }
 
 /// The solution with the effects that the recordings show; they are part of the equations

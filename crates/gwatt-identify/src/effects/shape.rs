@@ -13,7 +13,7 @@ pub enum Shape {
         /// Periods per m (rad).
         per_unit: f64,
     },
-    /// Inertia and friction of the load within the play.
+    /// Inertia of the load within the play, and its friction, if it has any.
     Backlash(Play),
     /// Friction that falls with the speed.
     Stribeck {
@@ -26,7 +26,14 @@ impl Shape {
     /// Its unknowns for one recording.
     pub fn width(self) -> usize {
         match self {
-            Self::Cogging { .. } | Self::Backlash(_) => 2,
+            Self::Cogging { .. } => 2,
+            Self::Backlash(play) => {
+                if play.is_braked() {
+                    2
+                } else {
+                    1
+                }
+            }
             Self::Stribeck { .. } => 1,
         }
     }
@@ -72,7 +79,11 @@ impl Shape {
                 let (sines, cosines) = angles.map(libm::sincos).unzip();
                 vec![sines, cosines]
             }
-            Self::Backlash(play) => play.differences(raw)?.into(),
+            Self::Backlash(play) => {
+                let mut columns = play.differences(raw)?.to_vec();
+                columns.truncate(self.width());
+                columns
+            }
             Self::Stribeck { speed } => {
                 let fall = |v: &f64| sign(*v) * libm::exp(-(v / speed) * (v / speed));
                 vec![velocity.iter().map(fall).collect()]
