@@ -328,6 +328,11 @@ fn a_file_of_subprograms_is_said_to_be_one() {
         "{}",
         read.stdout
     );
+    // The end of a program after them does nothing more.
+    shop.put("ends.ngc", "o<a> sub\nG0 X1\no<a> endsub\nM2\n");
+    let read = shop.run(&["check", "ends.ngc", "-m", "linuxcnc-mill"]);
+    assert_eq!(read.code, 0, "{}", read.stderr);
+    assert!(read.stderr.contains(note), "{}", read.stderr);
     // No certificate speaks of what was not looked at.
     let limited = shop.run(&["limit", "subs.ngc", "-m", "linuxcnc-mill"]);
     assert_eq!(limited.code, 0, "{}", limited.stderr);

@@ -125,6 +125,11 @@ fn rules_that_do_not_belong() {
       | [look_ahead]
       | ^^^^^^^^^^^^
     ");
+    assert_snapshot!(findings(&under("linuxcnc", "[look_ahead]\nblocks_at_most = 20")), @r"
+    line 19, error machine-kind: `blocks_at_most` goes with `blocks`, with rules for corners other than those of LinuxCNC, and without a cruise ratio
+      | [look_ahead]
+      | ^^^^^^^^^^^^
+    ");
     assert_snapshot!(findings(&under("grbl", "[look_ahead.junction_deviation]\ndeviation_mm = 0.1\n[look_ahead.classic_jerk]\nstep_mm_s = { X = 1 }")), @r"
     line 21, error machine-twice: a planner has one rule for corners
       | [look_ahead.classic_jerk]

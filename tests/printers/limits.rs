@@ -157,6 +157,36 @@ fn limits_may_act_on_the_move_before() {
     assert!(!errors.contains("fault of gwatt"), "{errors}");
 }
 
+/// RepRapFirmware sees more or fewer moves, as time goes. Of 1 mm at 50 mm/s² it is as fast as it can
+/// stop in those that it sees: √(2·50·29) = 54 mm/s to 77 mm/s. Peaks are those of the worst.
+#[test]
+fn how_much_is_seen_is_a_matter_of_timing() {
+    let peak_w = |blocks, most, program: &str| {
+        let mut machine = machine("reprap");
+        let rules = machine
+            .controller
+            .planner
+            .look_ahead
+            .as_mut()
+            .expect("rules");
+        (rules.blocks, rules.blocks_at_most) = (Some(blocks), most);
+        let input = Cursor::new(program.as_bytes());
+        let found = pipeline::analyze(input, &machine, &Options::default(), None);
+        found.expect("accepted").peak_w
+    };
+    let short = format!("M204 P50 T50\nG91\nG1 F6000\n{}", "G1 X1\n".repeat(200));
+    let ranged = peak_w(29, Some(59), &short);
+    for blocks in [29, 37, 45, 52, 59] {
+        let fixed = peak_w(blocks, None, &short);
+        assert!(fixed <= ranged * (1.0 + 1e-9), "{blocks}: {fixed} {ranged}");
+    }
+    assert!(peak_w(29, None, &short) < 0.9 * ranged);
+    assert!(peak_w(59, None, &short) > 0.9 * ranged);
+    // Where a move stops within 29 of them all is the same.
+    let long = format!("M204 P1000 T1000\nG91\nG1 F6000\n{}", "G1 X1\n".repeat(200));
+    assert_eq!(peak_w(29, Some(59), &long), peak_w(29, None, &long));
+}
+
 /// Marlin: M204 R alone limits moves of the extruder alone, whatever M201 says of it: 10 kg at
 /// 0.01 m/s and 0.8 m/s² draw 0.08 W.
 #[test]

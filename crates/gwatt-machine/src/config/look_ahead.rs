@@ -170,8 +170,20 @@ pub(crate) fn own(
     };
     if let Ok(found) = corner(findings, &at.value, Some(&rules.corner)) {
         let corner = found.unwrap_or(rules.corner);
-        planner.look_ahead = Some(with(&at.value, LookAhead { corner, ..rules }));
+        let rules = with(&at.value, LookAhead { corner, ..rules });
+        if at.value.blocks_at_most.is_some() && !may_see_more(&rules) {
+            let message = "`blocks_at_most` goes with `blocks`, with rules for corners other than \
+                           those of LinuxCNC, and without a cruise ratio";
+            findings.error("machine-kind", &at.span, message, None);
+        }
+        planner.look_ahead = Some(rules);
     }
+}
+
+/// Whether plans are known to lie between those with the fewest and the most blocks.
+fn may_see_more(rules: &LookAhead) -> bool {
+    let linuxcnc = matches!(rules.corner, CornerRule::LinuxCnc { .. });
+    rules.blocks.is_some() && !linuxcnc && rules.min_cruise_ratio == 0.0
 }
 
 /// The rules with what a table gives besides the corner.
