@@ -81,7 +81,7 @@ fn a_profile_is_found_beside_the_machine() {
     line 3, error machine-controller: the controller profile sub/own.toml has mistakes
       | controller = "sub/own.toml"
       |              ^^^^^^^^^^^^^^
-    line 37, error machine-unknown-key: sub/own.toml: unknown key `planer` / did you mean `planner`?
+    line 39, error machine-unknown-key: sub/own.toml: unknown key `planer` / did you mean `planner`?
       | [planer]
       |  ^^^^^^
     "#);

@@ -172,7 +172,10 @@ fn a_joint_of_s_curves_that_is_passed_faster_at_a_lower_feed() {
             ),
         ),
     ];
-    let machine = machine("reprap", LONG_CHORDS, &axes);
+    let mut machine = machine("reprap", LONG_CHORDS, &axes);
+    // With limits of jerk the robust bound would count where how much is seen is not known.
+    let rules = machine.controller.planner.look_ahead.as_mut();
+    rules.expect("rules").blocks_at_most = None;
     let program = "G3 X-0.7080 Y-0.2650 I0.1585 J-1.5017 F8729.4\nG1 X-0.6631 Y-1.5102 F1188.3\n";
     let fed_back = |share: f64| most(&at(&machine, share, share), program)[1];
     assert!(fed_back(0.7) > 1.2 * fed_back(1.0));
