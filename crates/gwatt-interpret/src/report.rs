@@ -108,8 +108,14 @@ impl Report<'_, '_> {
             )
         };
         let help = if letter == b'M' {
+            // Firmware of printers has such words; their arguments may be anything.
+            let field = if word.value.fract() == 0.0 {
+                "ignored"
+            } else {
+                "ignored_macros"
+            };
             format!(
-                "if it moves no axis, say so in the machine file: ignored = [\"{code}\"] under \
+                "if it moves no axis, say so in the machine file: {field} = [\"{code}\"] under \
                  [language]; what it switches on is a [[load]]"
             )
         } else if name == "a word" {

@@ -117,7 +117,8 @@ impl Control<'_> {
             return next;
         }
         self.code(run, (letter, number, span), &parameters);
-        next
+        // M900 has M among its parameters on Bambu Lab's printers.
+        next.filter(|_| !(self.one_a_line() && self.passes(letter, number)))
     }
 
     fn one_a_line(&self) -> bool {

@@ -88,6 +88,14 @@ impl Control<'_> {
                 .fault("macro", message, "write THEN #1=…", start)
                 .into());
         }
+        if let Some(at) = word_after(reader.text, reader.at) {
+            let message = "a word after THEN and an assignment: whether it depends on the condition is \
+                           not known";
+            let help =
+                "write it on a line of its own, with IF … GOTO around it where it depends on that";
+            reader.at = at + 1;
+            return Err(reader.fault("macro", message, help, at).into());
+        }
         if holds {
             let held = reader.assigned(self)?;
             let span = Span::new(start, reader.at);
@@ -149,6 +157,31 @@ impl Control<'_> {
     }
 }
 
+/// The first word from `at` on, save S, which moves nothing: a letter by itself outside of brackets and
+/// comments.
+fn word_after(text: &[u8], at: usize) -> Option<usize> {
+    let (mut depth, mut letters, mut comment) = (0_usize, 0_usize, false);
+    for (index, byte) in text.iter().enumerate().skip(at) {
+        match byte {
+            b'(' => comment = true,
+            b')' => comment = false,
+            b'[' => depth += 1,
+            b']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        if byte.is_ascii_alphabetic() && depth == 0 && !comment {
+            letters += 1;
+        } else {
+            let word = text.get(index.saturating_sub(1)).filter(|_| letters == 1);
+            if word.is_some_and(|letter| !letter.eq_ignore_ascii_case(&b'S')) {
+                return Some(index - 1);
+            }
+            letters = 0;
+        }
+    }
+    None
+}
+
 /// Whether `THEN #3000=` stands after a condition.
 fn raises_alarm(text: &[u8], from: usize) -> bool {
     let bare: Vec<u8> = text
@@ -175,4 +208,28 @@ fn whole(value: Value, most: f64) -> Option<u64> {
     let value = value?;
     let number = value.round();
     ((0.0..=most).contains(&number) && (value - number).abs() < 1e-4).then_some(number as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::word_after;
+
+    #[test]
+    fn a_word_after_an_assignment_is_seen() {
+        let found = |text: &str| {
+            let at = text.find('=')? + 1;
+            word_after(text.as_bytes(), at).map(|at| &text[at..])
+        };
+        assert_eq!(found("THEN #7=[10.*2.] Y[100.]"), Some("Y[100.]"));
+        assert_eq!(found("THEN #7=#8X100. (A)"), Some("X100. (A)"));
+        assert_eq!(found("THEN #7=#8 g1 X1."), Some("g1 X1."));
+        for text in [
+            "THEN #7=SIN[#1*X]",
+            "THEN #7=#8 MOD 3",
+            "THEN #3000=1(A B C)",
+            "THEN #7=[#17*0.9] S[#18*0.85]",
+        ] {
+            assert_eq!(found(text), None, "{text}");
+        }
+    }
 }
