@@ -30,6 +30,28 @@ fn speed_limits_of_axes() {
     ");
 }
 
+/// The extruder's share of an arc is that of each of its chords: 1 mm/s for 12 mm on a quarter of a
+/// circle of 60 mm leave 94.248/12 mm/s along it. Of the axes that turn the limit is that of chords.
+#[test]
+fn speed_limits_of_axes_on_arcs() {
+    let arc = "G2 X60 Y60 I60 J0 E12 F6000\n";
+    let along = |limit: &str| {
+        let moves = marlin(&format!("{limit}\n{arc}"));
+        moves.lines().next().unwrap_or_default().to_owned()
+    };
+    assert!(along("M203 E1").contains(" v7.854"), "{}", along("M203 E1"));
+    assert!(
+        along("M203 E9").contains(" v70.686"),
+        "{}",
+        along("M203 E9")
+    );
+    assert!(
+        along("M203 X20").contains(" v100.000"),
+        "{}",
+        along("M203 X20")
+    );
+}
+
 /// M220 scales moves of the extruder alone on Marlin, on RepRapFirmware only those that name
 /// an axis.
 #[test]

@@ -308,11 +308,14 @@ impl Control<'_> {
         let (mut rapid_factor, mut feed_excess) = (self.knobs.rapid_factor, 1.0);
         // Threads follow the spindle.
         if self.printer.adjusts && !matches!(kind, MoveKind::Thread | MoveKind::Tap) {
-            let is_line = arc.is_none() && unknown_start.is_empty();
+            let turning = arc
+                .as_ref()
+                .map_or(0, |arc| 1 << arc.plane[0] | 1 << arc.plane[1]);
             let course = Course {
                 end,
                 commanded: AxisSet(moving.0 | unknown_start.0),
-                length_mm: if is_line { length_mm } else { 0.0 },
+                turning: AxisSet(turning),
+                length_mm,
                 unknown: !unknown_start.is_empty(),
             };
             let is_given = given_mm_s.is_some();

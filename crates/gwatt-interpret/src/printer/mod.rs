@@ -116,7 +116,9 @@ pub(super) struct Course<'a> {
     pub(super) end: &'a AxisValues,
     /// Axes that move or may move.
     pub(super) commanded: AxisSet,
-    /// Length of a straight path; 0 where it is none or is not known.
+    /// Axes of the plane of an arc, whose share of the path changes along it.
+    pub(super) turning: AxisSet,
+    /// Length of the path, where its start is known.
     pub(super) length_mm: f64,
     /// Where it starts is not known.
     pub(super) unknown: bool,

@@ -55,7 +55,8 @@ impl Control<'_> {
             let caps = course.commanded.iter().map(|axis| knobs.speed_mm_s[axis]);
             return feed.min(caps.fold(0.0, f64::max));
         }
-        for axis in course.commanded.iter() {
+        // Chords of an arc that run along one axis of its plane are as fast as the other permits.
+        for axis in AxisSet(course.commanded.0 & !course.turning.0).iter() {
             let distance = (course.end[axis] - self.position.at[axis]).abs();
             if distance > 0.0 && course.length_mm > 0.0 {
                 feed = feed.min(knobs.speed_mm_s[axis] * course.length_mm / distance);
