@@ -399,6 +399,7 @@ fn reprapfirmware() {
     accel_mm_s2 = { print = 1500, travel = 2500 } # M204 P1500 (line 10), M204 T2500 (line 10)
     [look_ahead]
     blocks = 29                  # M595 P60 (line 10)
+    blocks_at_most = 59          # M595 P60 (line 10)
     [look_ahead.speed_step]
     step_mm_s = { X = 16.66666667, Y = 16.66666667, Z = 0.5, E = 5 } # M566 X1000 (line 7), M566 Y1000 (line 7), M566 Z30 (line 7), M566 E300:200 (line 7)
     same_kind_only = false       # M566 P1 (line 7)

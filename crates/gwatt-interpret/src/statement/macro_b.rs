@@ -216,10 +216,10 @@ mod tests {
 
     #[test]
     fn a_word_after_an_assignment_is_seen() {
-        let found = |text: &str| {
+        fn found(text: &str) -> Option<&str> {
             let at = text.find('=')? + 1;
             word_after(text.as_bytes(), at).map(|at| &text[at..])
-        };
+        }
         assert_eq!(found("THEN #7=[10.*2.] Y[100.]"), Some("Y[100.]"));
         assert_eq!(found("THEN #7=#8X100. (A)"), Some("X100. (A)"));
         assert_eq!(found("THEN #7=#8 g1 X1."), Some("g1 X1."));
