@@ -305,6 +305,7 @@ impl Control<'_> {
         let Some(mut feed_mm_s) = self.speed_of(run, &way, given_mm_s, (length_mm, linear)) else {
             return;
         };
+        let commanded = AxisSet(moving.0 | unknown_start.0);
         let (mut rapid_factor, mut feed_excess) = (self.knobs.rapid_factor, 1.0);
         // Threads follow the spindle.
         if self.printer.adjusts && !matches!(kind, MoveKind::Thread | MoveKind::Tap) {
@@ -313,26 +314,23 @@ impl Control<'_> {
                 .map_or(0, |arc| 1 << arc.plane[0] | 1 << arc.plane[1]);
             let course = Course {
                 end,
-                commanded: AxisSet(moving.0 | unknown_start.0),
+                commanded,
                 turning: AxisSet(turning),
                 length_mm,
                 unknown: !unknown_start.is_empty(),
             };
-            let is_given = given_mm_s.is_some();
-            (feed_mm_s, feed_excess) = self.printer_speed(run, &course, feed_mm_s, is_given);
+            (feed_mm_s, feed_excess) =
+                self.printer_speed(run, &course, feed_mm_s, given_mm_s.is_some());
             rapid_factor *= self.speed_factor(&course, kind == MoveKind::Rapid);
         }
-        let path_accel_mm_s2 = self.path_accel(AxisSet(moving.0 | unknown_start.0));
-        let mut accel_mm_s2 = self.axes_accel(kind, AxisSet(moving.0 | unknown_start.0));
+        let path_accel_mm_s2 = self.path_accel(commanded);
+        let mut accel_mm_s2 = self.axes_accel(kind, commanded);
         if !unknown_start.is_empty() {
             hold_to_path(self.machine, &mut accel_mm_s2, path_accel_mm_s2);
         }
-        let stray = match &arc {
-            Some(arc) => stray::of_arc(arc, &self.position.at, end),
-            None => Stray::NONE,
-        };
+        let strays = |arc| stray::of_arc(arc, &self.position.at, end);
+        let stray = arc.as_ref().map_or(Stray::NONE, strays);
         self.moved = true;
-        let commanded = AxisSet(moving.0 | unknown_start.0);
         self.printer.pending = self.not_queued(arc.is_some(), commanded, length_mm);
         run.steps.push(Step::Move(Move {
             line: run.line,
@@ -352,7 +350,7 @@ impl Control<'_> {
             feed_mode: self.modal.feed_mode,
             accel_mm_s2,
             path_accel_mm_s2,
-            jerk_factor: self.knobs.jerk_of(AxisSet(moving.0 | unknown_start.0)),
+            jerk_factor: self.knobs.jerk_of(commanded),
             rapid_factor,
             pace: 1.0,
             dwell_s: 0.0,
