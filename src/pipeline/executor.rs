@@ -283,7 +283,7 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
         if idle && self.diagnostics.errors == 0 {
             self.diagnostics.push(nothing_done(subs));
         }
-        if self.executed > 0 && self.diagnostics.errors == 0 && self.interpreter.assumes_unit() {
+        if !idle && self.diagnostics.errors == 0 && self.interpreter.assumes_unit() {
             self.diagnostics.push(no_units());
         }
         if self.interpreter.holds() && self.diagnostics.errors == 0 {

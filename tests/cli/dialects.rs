@@ -333,6 +333,7 @@ fn a_file_of_subprograms_is_said_to_be_one() {
     let read = shop.run(&["check", "ends.ngc", "-m", "linuxcnc-mill"]);
     assert_eq!(read.code, 0, "{}", read.stderr);
     assert!(read.stderr.contains(note), "{}", read.stderr);
+    assert!(!read.stderr.contains("no-units"), "{}", read.stderr);
     // No certificate speaks of what was not looked at.
     let limited = shop.run(&["limit", "subs.ngc", "-m", "linuxcnc-mill"]);
     assert_eq!(limited.code, 0, "{}", limited.stderr);
