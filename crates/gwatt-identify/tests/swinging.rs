@@ -3,10 +3,10 @@
 
 use std::f64::consts::TAU;
 
-use gwatt_identify::{Kind, Quantity, Recording, Signal};
+use gwatt_identify::{Quantity, Recording};
 use nalgebra::{DMatrix, DVector};
 
-use crate::simulated::{PERIOD_S, Random};
+use crate::simulated::{PERIOD_S, Random, recording};
 
 /// Steps of the simulation from sample to sample.
 pub(crate) const FINE: usize = 16;
@@ -153,25 +153,8 @@ impl Table {
             added.push(sign * excitation);
             spring * apart + damper * speed + sign * excitation
         });
-        let signal = |name: &str, quantity, values| Signal {
-            name: name.to_owned(),
-            quantity,
-            kind: Kind::Linear,
-            values,
-        };
-        Recording {
-            period_s: PERIOD_S,
-            signals: vec![
-                signal("force_n", Quantity::Force, force),
-                signal(
-                    "position",
-                    Quantity::Position,
-                    position.into_iter().map(read).collect(),
-                ),
-            ],
-            ignored: Vec::new(),
-            notes: Vec::new(),
-        }
+        let counted = position.into_iter().map(read).collect();
+        recording(force, counted, Quantity::Position)
     }
 
     /// The least standard errors that an unbiased estimate has of the figures (Cramér and
