@@ -91,7 +91,8 @@ fn with_their_stops_on_every_control_whose_setting_decides() {
 fn the_word_of_power_on() {
     let kinds = |controller: &str, rest: &str| {
         let shop = Shop::mill(controller, "peak_power_w = 700", rest, "");
-        shop.put("a.nc", "G90 F500.\nX10.\nM30\n");
+        let feed = if rest.contains("feed") { " F500." } else { "" };
+        shop.put("a.nc", &format!("G90{feed}\nX10.\nM30\n"));
         let (code, moves, errors) = shop.run("moves a.nc");
         let kind = |kind: &str| moves.contains(&format!("\"kind\":\"{kind}\""));
         let noted = errors.contains("no-motion-word");
@@ -104,6 +105,12 @@ fn the_word_of_power_on() {
     assert_eq!(kinds("siemens", &said("feed")), (0, false, true, false));
     assert_eq!(kinds("grbl", ""), (0, true, false, false));
     assert_eq!(kinds("linuxcnc", ""), (2, false, false, true));
+    // Under G1 it would be blended with what comes next, which no rapid is there.
+    let shop = Shop::mill("fanuc", "peak_power_w = 700", "", "");
+    for (head, code) in [("G90 F500.", 2), ("G90 G61 F500.", 0), ("G90", 0)] {
+        shop.put("a.nc", &format!("{head}\nX10.\nM30\n"));
+        assert_eq!(shop.run("moves a.nc").0, code, "{head}");
+    }
 }
 
 /// In a loop each of them gets its own word, which is right in each of its runs: one that

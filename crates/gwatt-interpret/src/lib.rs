@@ -27,6 +27,7 @@ mod expression;
 mod facts;
 mod feed_expression;
 mod hidden_words;
+mod first_motion;
 mod flow;
 mod g_codes;
 mod given;

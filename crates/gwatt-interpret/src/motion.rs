@@ -9,7 +9,7 @@ use super::printer::Course;
 use super::report::Report;
 use super::stray;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
-use gwatt_machine::{ALL_AXES, AxisKind, AxisSet, AxisValues, PowerOnMotion};
+use gwatt_machine::{ALL_AXES, AxisKind, AxisSet, AxisValues};
 use gwatt_motion::{Arc, FeedMode, Move, MoveKind, Step, Stray, hold_to_path, path_length};
 use gwatt_syntax::source::Span;
 
@@ -78,15 +78,8 @@ impl Control<'_> {
         let arc = matches!(self.modal.motion, Motion::ArcCw | Motion::ArcCcw);
         let center = run.words.unused & (bit(b'I') | bit(b'J') | bit(b'K')) != 0;
         if !(run.words.has_axes() || arc && center) {
-            if arc
-                && self
-                    .machine
-                    .controller
-                    .language
-                    .family
-                    .facts()
-                    .arcs_need_words
-            {
+            let family = self.machine.controller.language.family.facts();
+            if arc && family.arcs_need_words {
                 lone_arc(run);
             }
             return;
@@ -102,25 +95,6 @@ impl Control<'_> {
             Motion::Rapid | Motion::Linear => self.straight(run),
             Motion::ArcCw | Motion::ArcCcw => self.arc(run),
         }
-    }
-
-    /// Whether a block that comes before any motion word counts as a rapid, which is reported; if
-    /// not, the control refuses it.
-    pub(super) fn goes_before_any_word(&self, run: &mut Run<'_, '_>) -> bool {
-        let span = run.whole();
-        let rule = "no-motion-word";
-        if self.machine.controller.language.power_on_motion == PowerOnMotion::Unknown {
-            let message = "no motion word yet: which one is in force then, a setting of the control \
-                           says (`power_on_motion` under [language]); taken for G0, the fastest";
-            run.report.note_once(rule, message, span);
-            run.facts.no_motion_word = true;
-            return true;
-        }
-        let message = "axis words without a motion word in force";
-        run.report
-            .error(rule, message, span)
-            .help("write G0, G1, G2 or G3 in this block or before");
-        false
     }
 
     /// A dwell where the axes stand.

@@ -118,7 +118,7 @@ impl Control<'_> {
         }
         self.code(run, (letter, number, span), &parameters);
         // M900 has M among its parameters on Bambu Lab's printers.
-        next.filter(|_| !(self.one_a_line() && self.passes(letter, number)))
+        next.filter(|_| !(self.one_a_line() && (letter, number) == (b'M', 9000)))
     }
 
     fn one_a_line(&self) -> bool {
