@@ -5,6 +5,7 @@
 //! Fanuc B-63944EN and B-63604EN ("Decimal Point Programming", "G Code List in
 //! T Series", "Skip Function (G31)"), Haas mill and lathe operator's manuals.
 
+mod lathe_corner;
 mod point_kinds;
 mod words;
 

@@ -48,6 +48,7 @@ mod named_parameters;
 mod nci;
 mod offsets;
 mod osp;
+mod own_moves;
 mod own_state;
 mod output_knob;
 mod passed_over;

@@ -188,6 +188,9 @@ impl Words {
                     .contains(&number)
                     .then_some(GCode::Ignored)
             };
+            if controller.language.unknown_moves.contains(&(b'G', number)) {
+                return Some((GCode::Ignored, number));
+            }
             let dialect = &controller.language.dialect;
             if dialect.active {
                 match dialect_code(number, dialect) {

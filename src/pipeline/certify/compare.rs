@@ -64,7 +64,18 @@ pub(super) fn compare(
         && (falls(original.speed_mm_s, after.speed_mm_s)
             || falls(original.accel_mm_s2, after.accel_mm_s2))
     {
-        let message = "the feed of a block that was not to be changed differs".to_owned();
-        reasons.push(place, "changed-feed", message, BUG, text);
+        let (message, help) = if asked.has_no_feed() {
+            (
+                "no F is in force, and the one that the control takes then is not known: feeds that \
+                 replace rapids before it leave another",
+                "write F before them",
+            )
+        } else {
+            (
+                "the feed of a block that was not to be changed differs",
+                BUG,
+            )
+        };
+        reasons.push(place, "changed-feed", message.to_owned(), help, text);
     }
 }

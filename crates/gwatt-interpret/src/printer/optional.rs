@@ -67,7 +67,7 @@ impl Control<'_> {
         run.report.note_once("optional-part", message, span);
         let before = Before::new(&self.printer, &self.modal, &self.knobs, self.loads);
         self.printer.optional.push(before);
-        self.all_at_full_speed(run);
+        self.at_full_speed(run, self.machine.axis_set);
         run.act(ActionKind::Other, 0.0);
     }
 
@@ -116,7 +116,7 @@ impl Control<'_> {
             state.tool = u32::MAX;
         }
         self.limits_at_least(&before.knobs);
-        self.all_at_full_speed(run);
+        self.at_full_speed(run, self.machine.axis_set);
         run.act(ActionKind::Other, 0.0);
     }
 }

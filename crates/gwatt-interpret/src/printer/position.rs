@@ -19,17 +19,8 @@ impl Control<'_> {
         );
         run.report.note_once("unknown-moves", &message, span);
         note_levelling_if(run, &name, span);
-        self.all_at_full_speed(run);
+        self.at_full_speed(run, self.machine.axis_set);
         run.act(ActionKind::Other, 0.0);
-    }
-
-    /// Every axis at its full speed and acceleration, and from then on in an unknown place.
-    pub(super) fn all_at_full_speed(&mut self, run: &mut Run<'_, '_>) {
-        run.facts.boundary = true;
-        let all = self.machine.axis_set;
-        let end = self.position.at;
-        self.go_at(run, &end, all, Some(f64::INFINITY));
-        self.position.unknown.0 |= all.0;
     }
 
     /// G28: each group of axes from an unknown place to its endstops.

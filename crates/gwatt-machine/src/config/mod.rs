@@ -17,6 +17,7 @@ mod findings;
 mod hints;
 mod kinematics;
 mod level_words;
+mod listed_words;
 mod levels;
 mod load;
 mod look_ahead;

@@ -5,7 +5,7 @@ use super::controller_file::{DistanceName, UnitsName};
 use super::findings::Findings;
 use super::machine_file::{ArcWithoutCenterName, OwnLanguageTable};
 use super::value::{At, NotNegative};
-use super::{printer, profile};
+use super::{listed_words, printer, profile};
 use crate::controller::Language;
 use crate::units::SECONDS_PER_MINUTE;
 
@@ -24,6 +24,9 @@ pub(crate) fn take(
         .tool_change
         .map(profile::tool_change)
         .or(language.tool_change);
+    if let Some(axes) = &own.tool_change_moves {
+        language.tool_change_moves = Some(listed_words::axes_named(findings, axes));
+    }
     if let Some(returns) = own.pecks_return_to_r {
         language.pecks_return_to_r = returns;
     }
@@ -56,12 +59,11 @@ pub(crate) fn take(
     if let Some(compensation) = &own.cutter_compensation {
         language.compensation = profile::compensation(compensation);
     }
-    let (g, m) = profile::ignored(findings, own.ignored.as_deref().unwrap_or_default());
+    let (g, m) = listed_words::ignored(findings, own.ignored.as_deref().unwrap_or_default());
     language.ignored_g.extend(g);
     language.ignored_m.extend(m);
     for (field, list) in [
         ("ignored_macros", &own.ignored_macros),
-        ("unknown_moves", &own.unknown_moves),
         ("unknown_macros", &own.unknown_macros),
     ] {
         if list.is_some() && !language.family.facts().printer {
@@ -76,9 +78,14 @@ pub(crate) fn take(
         }
         language.printer.retract = printer::retract(Some(&retract.value));
     }
-    let printer = &mut language.printer;
+    let mut moves = own.unknown_moves.as_ref();
+    if !language.family.facts().printer {
+        let words = moves.take().map(Vec::as_slice).unwrap_or_default();
+        language.unknown_moves = listed_words::moving_words(findings, words);
+    }
     let ignored = printer::commands(findings, own.ignored_macros.as_ref());
-    let moves = printer::commands(findings, own.unknown_moves.as_ref());
+    let printer = &mut language.printer;
+    let moves = printer::commands(findings, moves);
     // Macros, whatever their names: nobody says what they switch.
     printer.may_heat.extend(moves.iter().cloned());
     let macros = printer::commands(findings, own.unknown_macros.as_ref());
