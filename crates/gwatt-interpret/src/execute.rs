@@ -271,6 +271,7 @@ impl Control<'_> {
             // The same as below, without asking for what is not there.
             self.read_feed(run);
             self.motion_word(run);
+            self.lathe_corner(run);
             self.motion(run);
             if run.report.diagnostics.errors == errors {
                 self.complain_about_rest(run);

@@ -164,8 +164,8 @@ impl Control<'_> {
         match order {
             None if run.words.has_axes() => {
                 run.facts.fixed = Some(TOOL_CHANGE_UNKNOWN);
-                run.act(ActionKind::ToolChangeInMotion, 6.0);
                 self.tool_change_moves(span, run);
+                run.act(ActionKind::ToolChangeInMotion, 6.0);
                 return;
             }
             Some(order)
@@ -181,8 +181,8 @@ impl Control<'_> {
             _ => {}
         }
         if order != Some(ToolChange::AfterMotion) {
-            run.act(ActionKind::ToolChange, 6.0);
             self.tool_change_moves(span, run);
+            run.act(ActionKind::ToolChange, 6.0);
         }
     }
 
@@ -203,11 +203,11 @@ impl Control<'_> {
             if run.facts.selects_tool {
                 run.act(ActionKind::ToolSelect, f64::from(self.tools.selected));
             }
+            self.tool_change_moves(run.whole(), run);
             run.act(ActionKind::ToolChange, 6.0);
-            self.tool_change_moves(run.whole(), run);
         } else if run.steps.iter().any(is_in_motion) {
-            run.act(ActionKind::ToolChangeInMotion, 6.0);
             self.tool_change_moves(run.whole(), run);
+            run.act(ActionKind::ToolChangeInMotion, 6.0);
         }
     }
 

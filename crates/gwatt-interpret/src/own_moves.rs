@@ -27,12 +27,13 @@ impl Control<'_> {
             return;
         }
         run.facts.boundary = true;
-        if run.words.has_axes() {
+        let in_parameters = self.rules.places_in_parameters;
+        if run.words.has_axes() || in_parameters {
             run.facts.fixed = Some(MOVES_OF_ITSELF);
         } else {
             run.facts.reference = Some(1);
         }
-        if self.rules.places_in_parameters {
+        if in_parameters {
             // LinuxCNC: to zero of the machine, or to wherever the INI file says.
             return self.at_full_speed(run, named);
         }
