@@ -4,12 +4,11 @@
 //! means `value + work offset + G92 offset + tool length`, turned and scaled
 //! where the program says so.
 
-use super::reading::Reading;
-
 use super::datum::Datums;
 use super::dialect::PointKinds;
 use super::frame::Frame;
 use super::offsets::Offsets;
+use super::reading::Reading;
 use gwatt_machine::{AXES, AxisSet, AxisValues, Machine};
 use gwatt_motion::Start;
 

@@ -15,7 +15,7 @@ pub(super) struct Track {
     pub(super) limits: Limits,
     /// Time so far in s.
     pub(super) time_s: f64,
-    /// What is found is no less than at any lower override: see [`terms`].
+    /// What is found is no less than at any lower override: see [`terms`](super::terms).
     pub(super) bounds: bool,
     /// These are no lower than some share of the largest.
     pub(super) ends: bool,
