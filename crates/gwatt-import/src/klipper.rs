@@ -4,14 +4,16 @@
 //! limits from `klippy/kinematics/extruder.py`.
 
 mod carriages;
+mod config;
 mod macros;
 
+use config::Config;
 use std::f64::consts::PI;
 
 use gwatt_machine::AxisId;
 
 use crate::found::{Build, Figure, Found, FoundAxis, entry, highest, shown};
-use crate::ini::{Item, Style, items, last};
+use crate::ini::{Style, items, last};
 use crate::kinematics;
 use crate::near::Job;
 use crate::text::Log;
@@ -37,32 +39,6 @@ const MIN: f64 = 60.0;
 pub(crate) fn include(line: &str) -> Option<&str> {
     let name = line.strip_prefix("[include ")?.split(']').next()?.trim();
     (!name.is_empty()).then_some(name)
-}
-
-/// Values of the files.
-pub(crate) struct Config<'i, 't> {
-    items: &'i [Item<'t>],
-}
-
-impl Config<'_, '_> {
-    /// A value above 0.
-    fn positive(&self, log: &mut Log, section: &str, key: &str) -> Option<Figure> {
-        let item = last(self.items, section, key)?;
-        let value = log.positive(&item.place, item.value, &format!("`{key}`"))?;
-        Some(Figure::new(value, item.source()))
-    }
-
-    /// Any number.
-    fn number(&self, log: &mut Log, section: &str, key: &str) -> Option<Figure> {
-        let item = last(self.items, section, key)?;
-        let value = log.number(&item.place, item.value)?;
-        Some(Figure::new(value, item.source()))
-    }
-
-    fn has(&self, section: &str) -> bool {
-        let mut items = self.items.iter();
-        items.any(|item| item.section.eq_ignore_ascii_case(section))
-    }
 }
 
 /// Reads the configuration.

@@ -4,16 +4,17 @@
 //! in machine units per second; `[AXIS_n]` of a number is that of versions before 2.8.
 
 mod hal;
+mod kinematics_module;
 
+use kinematics_module::by_name;
 use std::path::Path;
 
 use gwatt_machine::AxisId;
 
 use crate::found::{Build, Figure, Found, entry, highest, shown};
 use crate::ini::{Item, Style, items, last};
-use crate::kinematics;
 use crate::near::{Job, Near};
-use crate::text::{File, Log, Place};
+use crate::text::{File, Log};
 use hal::Hal;
 
 /// How its files are written.
@@ -175,15 +176,6 @@ fn kinematics_of(config: &Config<'_>, found: &mut Found, log: &mut Log) {
     };
     let name = item.value.split_whitespace().next().unwrap_or("");
     by_name(name, item.whole, &item.place, found, log);
-}
-
-/// What a module of kinematics makes of the machine. `gantrykins` gives axes several joints.
-fn by_name(name: &str, whole: &str, place: &Place<'_>, found: &mut Found, log: &mut Log) {
-    match name {
-        "trivkins" | "gantrykins" | "" => {}
-        "corexykins" => kinematics::core(found, log, place, whole, Some("corexy")),
-        other => kinematics::refuse(log, place, other),
-    }
 }
 
 /// The letters of the axes, each with its joints in the order of `coordinates=`.

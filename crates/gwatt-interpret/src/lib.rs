@@ -61,6 +61,7 @@ mod program_coordinates;
 mod printer;
 mod probe;
 mod queue_words;
+mod reading;
 mod reference;
 mod report;
 mod rules;
@@ -104,7 +105,7 @@ pub use gwatt_motion::{
 pub use knob::KnobState;
 pub use modal::{Feed, Modal, NumberText};
 pub use parameter_file::ParameterFile;
-pub use position::{BlockDelete, ProbeResult, ProbeWay, Reading};
+pub use reading::{BlockDelete, ProbeResult, ProbeWay, Reading};
 pub use report::Diagnostics;
 pub use shelf::Shelf;
 pub use tool_table::{Tool, ToolTable};

@@ -1,5 +1,6 @@
 //! Macros of the machine, of which nothing is known, and what they leave unstated.
 
+use super::state::Unstated;
 use crate::code::Motion;
 use crate::control::{Control, Run};
 use crate::knob::KnobState;
@@ -7,33 +8,6 @@ use crate::places::EXTRUDER;
 use gwatt_machine::{ALL_AXES, ExtruderMode};
 use gwatt_motion::Square;
 use gwatt_syntax::source::Span;
-
-/// Modes that a macro may have changed and that the program has not stated since.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Unstated {
-    /// G90 or G91.
-    distance: bool,
-    /// M82 or M83.
-    extruder: bool,
-}
-
-impl Unstated {
-    pub(super) fn of(distance: bool, extruder: bool) -> Self {
-        Self { distance, extruder }
-    }
-
-    pub(super) fn any(self) -> bool {
-        self != Self::default()
-    }
-
-    /// What is unstated here or there.
-    pub(super) fn or(self, other: Self) -> Self {
-        Self::of(
-            self.distance || other.distance,
-            self.extruder || other.extruder,
-        )
-    }
-}
 
 impl Control<'_> {
     /// A macro of which only the machine knows what it does: it may move anywhere, heat, and
