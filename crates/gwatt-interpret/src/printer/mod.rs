@@ -30,7 +30,7 @@ use std::sync::Arc;
 
 use super::position::Reading;
 use super::report::Report;
-use gwatt_machine::{AXES, AxisSet, AxisValues, Controller, Machine, Retract};
+use gwatt_machine::{AXES, AxisSet, AxisValues, Command, Controller, Machine, Printer, Retract};
 use gwatt_syntax::{Block, Word};
 use kept::{SavedPosition, SavedState};
 use optional::Before;
@@ -41,6 +41,8 @@ use unstated::Unstated;
 pub(super) struct State {
     /// Something below changes feeds or lengths of moves.
     pub(super) adjusts: bool,
+    /// The machine has macros in place of G0 to G3.
+    own_motion: bool,
     /// M82 (true) or M83.
     extruder_absolute: bool,
     /// Modes that a macro may have changed.
@@ -86,6 +88,7 @@ impl State {
         let language = &machine.controller.language;
         Self {
             adjusts: false,
+            own_motion: own_motion(&language.printer),
             extruder_absolute: true,
             unstated: Unstated::default(),
             feed_factor: 1.0,
@@ -111,6 +114,13 @@ impl State {
     }
 }
 
+/// Whether G0 to G3 are macros of the machine.
+fn own_motion(printer: &Printer) -> bool {
+    let lists = [&printer.unknown_moves, &printer.unknown_macros];
+    let mut all = lists.into_iter().flatten();
+    all.any(|one| matches!(one, Command::Code(b'G', 0..40)))
+}
+
 /// Where a move goes, for what depends on that.
 pub(super) struct Course<'a> {
     pub(super) end: &'a AxisValues,
@@ -125,12 +135,12 @@ pub(super) struct Course<'a> {
 }
 
 /// Whether a line has to be read as a printer's command: not one of axis words
-/// under G0 to G3.
-fn is_command(block: &Block) -> bool {
+/// under G0 to G3; `own_motion`: the machine has macros in place of some of these.
+fn is_command(block: &Block, own_motion: bool) -> bool {
     match block.words.first() {
         _ if !block.issues.is_empty() => true,
         Some(first) => match first.letter {
-            b'G' => !(0.0..4.0).contains(&first.value),
+            b'G' => own_motion || !(0.0..4.0).contains(&first.value),
             letter => matches!(letter, b'M' | b'T'),
         },
         None => false,
