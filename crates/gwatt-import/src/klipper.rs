@@ -3,8 +3,10 @@
 //! Sources: Klipper documentation, "Configuration reference"; defaults of the extruder's own
 //! limits from `klippy/kinematics/extruder.py`.
 
+mod bodies;
 mod carriages;
 mod config;
+mod homing;
 mod macros;
 
 use config::Config;
@@ -74,7 +76,8 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
     }
     extruder(&config, &mut found, log, velocity.as_ref(), accel.as_ref());
     corners(&config, &mut found, log, accel.as_ref());
-    macros::named(&items, &mut found);
+    homing::safe_z(&config, &mut found, log);
+    macros::named(job, &items, &mut found, log);
     found
 }
 

@@ -3,6 +3,7 @@
 //! Source: LinuxCNC documentation, "INI Configuration", "G-Code Quick Reference". Speeds are
 //! in machine units per second; `[AXIS_n]` of a number is that of versions before 2.8.
 
+mod changes;
 mod hal;
 mod kinematics_module;
 
@@ -105,6 +106,8 @@ pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
     }
     trajectory(&config, &mut found, log);
     start_up(&config, &mut found, log);
+    changes::tool_change(&config, &mut found, log);
+    changes::remaps(&config, &mut found, log);
     corners(&config, &mut found, log);
     for name in ["SPINDLE_0", "SPINDLE"] {
         if found.spindle_rpm.is_none() {

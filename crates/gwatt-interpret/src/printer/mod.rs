@@ -45,12 +45,12 @@ pub(super) struct Course<'a> {
 }
 
 /// Whether a line has to be read as a printer's command: not one of axis words
-/// under G0 to G3.
-fn is_command(block: &Block) -> bool {
+/// under G0 to G3; `own_motion`: the machine has macros in place of some of these.
+fn is_command(block: &Block, own_motion: bool) -> bool {
     match block.words.first() {
         _ if !block.issues.is_empty() => true,
         Some(first) => match first.letter {
-            b'G' => !(0.0..4.0).contains(&first.value),
+            b'G' => own_motion || !(0.0..4.0).contains(&first.value),
             letter => matches!(letter, b'M' | b'T'),
         },
         None => false,

@@ -68,6 +68,23 @@ impl Control<'_> {
                 run.report.note_once("home", message, span);
             }
         }
+        self.home_moves(run, span);
+    }
+
+    /// What homing moves besides the axes that it homes.
+    fn home_moves(&mut self, run: &mut Run<'_, '_>, span: Span) {
+        let machine = self.machine;
+        for group in &machine.controller.language.printer.home_moves {
+            let group = AxisSet(group.0 & machine.axis_set.0);
+            if group.is_empty() {
+                continue;
+            }
+            self.home_group(run, group);
+            self.position.unknown.0 |= group.0;
+            let message = "G28 moves axes besides homing them (`home_moves` of the machine file): the \
+                           power of the next moves counts from anywhere";
+            run.report.note_once("home", message, span);
+        }
     }
 
     fn home_group(&mut self, run: &mut Run<'_, '_>, group: AxisSet) {

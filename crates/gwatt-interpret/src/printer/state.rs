@@ -4,7 +4,7 @@ use super::super::reading::Reading;
 use crate::code::Motion;
 use crate::knob::KnobState;
 use crate::modal::{Feed, Modal};
-use gwatt_machine::{AXES, AxisSet, AxisValues, Machine, Retract};
+use gwatt_machine::{AXES, AxisSet, AxisValues, Command, Machine, Printer, Retract};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -14,6 +14,8 @@ use std::sync::Arc;
 pub(crate) struct State {
     /// Something below changes feeds or lengths of moves.
     pub(crate) adjusts: bool,
+    /// The machine has macros in place of G0 to G3.
+    pub(super) own_motion: bool,
     /// M82 (true) or M83.
     pub(super) extruder_absolute: bool,
     /// Modes that a macro may have changed.
@@ -59,6 +61,7 @@ impl State {
         let language = &machine.controller.language;
         Self {
             adjusts: false,
+            own_motion: own_motion(&language.printer),
             extruder_absolute: true,
             unstated: Unstated::default(),
             feed_factor: 1.0,
@@ -82,6 +85,13 @@ impl State {
             states: BTreeMap::new(),
         }
     }
+}
+
+/// Whether G0 to G3 are macros of the machine.
+fn own_motion(printer: &Printer) -> bool {
+    let lists = [&printer.unknown_moves, &printer.unknown_macros];
+    let mut all = lists.into_iter().flatten();
+    all.any(|one| matches!(one, Command::Code(b'G', 0..40)))
 }
 
 /// A position that G60 keeps.

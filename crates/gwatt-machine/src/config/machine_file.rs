@@ -187,6 +187,9 @@ pub(crate) struct OwnLanguageTable {
     pub(crate) power_on_tolerance_mm: Option<NotNegative>,
     /// Printers: G10 and G11 until the program sets them.
     pub(crate) retract: Option<At<RetractTable>>,
+    /// Printers: axes that each G28 moves besides those that it homes, each group together, at
+    /// the speeds of homing; where they end is not known (Klipper: `[safe_z_home]`).
+    pub(crate) home_moves: Option<At<Vec<Vec<At<Letter>>>>>,
     /// What a number without a decimal point means.
     pub(crate) decimal_point: Option<PointName>,
     /// Whether words of X are diameters.

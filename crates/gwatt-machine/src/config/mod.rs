@@ -31,6 +31,7 @@ mod part_tables;
 mod parts;
 mod path_accel;
 mod plausible;
+mod plausible_parts;
 mod preset;
 mod printer;
 mod printer_table;
