@@ -224,10 +224,13 @@ fn half_a_servo_and_two_of_them_are_refused() {
     let (message, help) = refused(
         "velocity_bandwidth_hz = 5\nvelocity_integral_time_s = 0.01\nposition_gain_1_s = 100",
     );
-    assert_eq!(message, "the servo of axis X swings and does not settle");
+    assert_eq!(
+        message,
+        "the servo of axis X oscillates and does not settle"
+    );
     assert_eq!(
         help,
-        "with a lower gain, a larger bandwidth or a longer integral time it does"
+        "give a lower gain, a larger bandwidth or a longer integral time"
     );
     let (_, help) = refused("velocity_feedforward = 100");
     assert_eq!(help, "in percent? 100 % is 1");

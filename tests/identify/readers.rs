@@ -74,7 +74,7 @@ fn lines_are_named_and_nothing_of_the_readers_words() {
         (b"\xFF\xFEt\0i\0".to_vec(), "the file is UTF-16", "UTF-8"),
         (
             b"\x7FELF\x02\0\0\0".to_vec(),
-            "the file is no text",
+            "the file is not text",
             "export it as CSV",
         ),
         (

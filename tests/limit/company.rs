@@ -232,7 +232,7 @@ fn tools_that_are_changed_before_the_motion() {
 fn tools_that_change_when_the_machine_file_says() {
     let shop = |controller: &str, order: &str| {
         let order = match order {
-            "" => String::new(),
+            "" => "[language]\ntool_change_moves = []\n".to_owned(),
             order => format!("[language]\ntool_change = \"{order}\"\n"),
         };
         let rest = format!("[path]\nrapid = \"linear\"\n{order}[offsets]\nG54 = {{}}\n");

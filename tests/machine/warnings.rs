@@ -212,7 +212,7 @@ fn overload_with_nothing_below_it() {
     let machine = machine(&text);
     assert_eq!(machine.converters[0].ratings.overload.len(), 1);
     assert_snapshot!(findings(&text), @r"
-    line 7, warning machine-converter: `overload` without `continuous_power_w`: all power counts as overload / give the power that the converter delivers for ever
+    line 7, warning machine-converter: `overload` without `continuous_power_w`: all power counts as overload / give the power that the converter delivers continuously
       | overload = [{ power_w = 3000, seconds = 0.2, every_s = 10 }]
       |             ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
     ");

@@ -29,7 +29,7 @@ impl Control<'_> {
         run.facts.boundary = true;
         let in_parameters = self.rules.places_in_parameters;
         if run.words.has_axes() || in_parameters {
-            run.facts.fixed = Some(MOVES_OF_ITSELF);
+            run.facts.fixed.get_or_insert(MOVES_OF_ITSELF);
         } else {
             run.facts.reference = Some(1);
         }

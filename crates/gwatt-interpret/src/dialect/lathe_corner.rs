@@ -1,6 +1,6 @@
 //! Chamfers and rounded corners of lathes, whose words have no comma.
 
-use crate::code::Motion;
+use crate::code::{GCode, Motion};
 use crate::control::{Control, Run};
 use crate::letters::bit;
 use gwatt_machine::AxisId;
@@ -10,7 +10,8 @@ impl Control<'_> {
     /// off. C is one where the machine has no such axis. The next move says to which side, so
     /// that signs say nothing more (B-64604EN-1, "Chamfering and Corner R").
     pub(crate) fn lathe_corner(&mut self, run: &mut Run<'_, '_>) {
-        if self.dialect().lathe.is_none() || self.modal.motion != Motion::Linear {
+        let goes = run.words.g.iter().all(|(code, ..)| goes_along(*code));
+        if self.dialect().lathe.is_none() || self.modal.motion != Motion::Linear || !goes {
             return;
         }
         let [x, z, c] = [AxisId::X, AxisId::Z, AxisId::C].map(|axis| axis as usize);
@@ -38,4 +39,21 @@ impl Control<'_> {
         word.letter = if letter == b'R' { b'R' } else { b'C' };
         self.fanuc_corner(&word, &mut run.report);
     }
+}
+
+/// Whether a word leaves R, C, I and K of its block to a plain feed.
+fn goes_along(code: GCode) -> bool {
+    matches!(
+        code,
+        GCode::Motion(Motion::Linear)
+            | GCode::FeedMode(_)
+            | GCode::Absolute(_)
+            | GCode::Units { .. }
+            | GCode::Plane(_)
+            | GCode::WorkOffset(_)
+            | GCode::SurfaceSpeed
+            | GCode::CompensationOff
+            | GCode::CompensationOn { .. }
+            | GCode::ExactOnce
+    )
 }
