@@ -4,6 +4,8 @@
 //! Rows are made in stretches, column by column, so that the processor can work
 //! on several at once.
 
+use nalgebra::{DMatrix, DVector};
+
 use super::data::Data;
 use super::leaky_integrator::Fading;
 use super::normal::Normal;
@@ -104,14 +106,67 @@ impl Derivatives {
 
 /// Normal equations of a step from a model: a column for each parameter, one for
 /// each state of the first row that counts and of leaky integrators, one for each term
-/// of friction, and one for an offset. The rows before `first` do not count.
+/// of friction, and one for an offset. The rows before `first` do not count. What is `known`
+/// of the unknowns after the parameters is taken off: steps go on from there.
 #[must_use]
 pub fn gather(
     data: &Data<'_>,
     transfer: &TransferFunction,
     delay_is_free: bool,
     first: usize,
+    known: &[f64],
 ) -> Option<Normal> {
+    let mut normal: Option<Normal> = None;
+    each_stretch(
+        data,
+        (transfer, delay_is_free),
+        first,
+        known,
+        |width, live, gaps| {
+            let normal = normal.get_or_insert_with(|| Normal::new(width));
+            normal.add_columns(live, gaps);
+        },
+    )?;
+    normal.filter(|normal| normal.total.is_finite())
+}
+
+/// Sum of squares, as a matrix, of what each stretch of rows pulls the unknowns by: how far
+/// they are off where rows of a stretch are off together.
+#[must_use]
+pub fn pulls(
+    data: &Data<'_>,
+    transfer: &TransferFunction,
+    delay_is_free: bool,
+    first: usize,
+    known: &[f64],
+) -> Option<DMatrix<f64>> {
+    let mut sum: Option<DMatrix<f64>> = None;
+    each_stretch(
+        data,
+        (transfer, delay_is_free),
+        first,
+        known,
+        |width, live, gaps| {
+            let mut pull = DVector::zeros(width);
+            for (index, column) in live {
+                pull[*index] = column.iter().zip(gaps).map(|(x, gap)| x * gap).sum::<f64>();
+            }
+            let sum = sum.get_or_insert_with(|| DMatrix::zeros(width, width));
+            *sum += &pull * pull.transpose();
+        },
+    )?;
+    sum
+}
+
+/// Gives the columns of each stretch of rows that are not over, with how many there are, and
+/// what is left of the output.
+fn each_stretch(
+    data: &Data<'_>,
+    (transfer, delay_is_free): (&TransferFunction, bool),
+    first: usize,
+    known: &[f64],
+    mut take: impl FnMut(usize, &[(usize, &[f64])], &[f64]),
+) -> Option<()> {
     let derivatives = Derivatives::new(data, transfer, delay_is_free)?;
     let base = &derivatives.base;
     let mut bank = derivatives.bank(data);
@@ -120,7 +175,6 @@ pub fn gather(
     let count = terms.len();
     let states = base.order() + data.fading();
     let width = count + states + data.friction.len() + 1;
-    let mut normal = Normal::new(width);
     let mut columns = vec![[0.0; ROWS]; width];
     *columns.last_mut()? = [1.0; ROWS];
     let mut is_over = vec![false; width];
@@ -148,21 +202,13 @@ pub fn gather(
             Some(open) => combine(&mut simulated, &open.output(base), open.signals()),
             None => combine(&mut simulated, &output, bank.signals()),
         }
-        free.next(rows, |index, column| {
-            let at = count + index;
-            match (column, columns.get_mut(at), is_over.get_mut(at)) {
-                (Some(column), Some(slot), _) => *slot = *column,
-                (None, _, Some(over)) => *over = true,
-                _ => {}
-            }
-        });
+        let mut fill = |at: usize, column: Option<&Column>| match column {
+            Some(column) => columns.get_mut(at).map_or((), |slot| *slot = *column),
+            None => is_over.get_mut(at).map_or((), |over| *over = true),
+        };
+        free.next(rows, |index, column| fill(count + index, column));
         fading.next(rows, |index, column| {
-            let at = count + base.order() + index;
-            match (column, columns.get_mut(at), is_over.get_mut(at)) {
-                (Some(column), Some(slot), _) => *slot = *column,
-                (None, _, Some(over)) => *over = true,
-                _ => {}
-            }
+            fill(count + base.order() + index, column);
         });
         for (slot, column) in columns
             .iter_mut()
@@ -177,6 +223,12 @@ pub fn gather(
         for ((gap, y), simulated) in gaps.iter_mut().zip(measured).zip(&simulated) {
             *gap = y - simulated;
         }
+        let taken = columns.iter().zip(&is_over).skip(count).zip(known);
+        for ((column, _), known) in taken.filter(|((_, over), _)| !**over) {
+            gaps.iter_mut()
+                .zip(column)
+                .for_each(|(gap, x)| *gap -= known * x);
+        }
         let live: Vec<(usize, &[f64])> = columns
             .iter()
             .zip(&is_over)
@@ -184,9 +236,9 @@ pub fn gather(
             .filter(|(_, (_, over))| !**over)
             .filter_map(|(index, (column, _))| Some((index, column.get(..rows)?)))
             .collect();
-        normal.add_columns(&live, gaps.get(..rows)?);
+        take(width, &live, gaps.get(..rows)?);
     }
-    normal.total.is_finite().then_some(normal)
+    Some(())
 }
 
 /// What terms of friction make of the output, for a factor of 1.
