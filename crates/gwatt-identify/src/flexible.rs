@@ -191,58 +191,19 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
 fn as_recorded(recording: &Recording, choice: &Choice) -> Outcome<(Prepared, Flexible)> {
     let mut prepared = prepare(recording, choice)?;
     let may_rub = estimator(choice.method).has_friction() && prepared.is_force;
-    if let Some(rubbing) = may_rub.then(|| Rubbing::of(recording)).flatten()
-        && let Ok(found) = next_to(&mut prepared, choice, &rubbing)
-        && found.rubs
-    {
-        let found = closer(recording, &mut prepared, choice, (rubbing, found));
-        return Ok((prepared, found));
+    if let Some(rubbing) = may_rub.then(|| Rubbing::of(recording)).flatten() {
+        let force = prepared.input.clone();
+        rubbing.take_off(&mut prepared.input);
+        let found = identified(&prepared, choice, &rubbing);
+        if let Ok(found) = found
+            && found.rubs
+        {
+            return Ok((prepared, found));
+        }
+        prepared.input = force;
     }
     let found = identified(&prepared, choice, &Rubbing::default())?;
     Ok((prepared, found))
-}
-
-/// The model of a force of which this friction is taken off.
-fn next_to(prepared: &mut Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcome<Flexible> {
-    let force = prepared.input.clone();
-    rubbing.take_off(&mut prepared.input);
-    let found = identified(prepared, choice, rubbing);
-    prepared.input = force;
-    found
-}
-
-/// How often model and speed are found from one another at most, and by which share the noise
-/// falls where that is worth while.
-const ROUNDS: usize = 2;
-const WORTH: f64 = 0.02;
-
-/// A model and the speed near standstill, which shows only by a model, in turn.
-fn closer(
-    recording: &Recording,
-    prepared: &mut Prepared,
-    choice: &Choice,
-    (mut rubbing, mut found): (Rubbing, Flexible),
-) -> Flexible {
-    // Of an axis without modes, what shows only then stands for how it sticks.
-    if found.poles.is_empty() {
-        return found;
-    }
-    for _ in 0..ROUNDS {
-        let Some(closer) = rubbing.closer(recording, &found.fitted()) else {
-            break;
-        };
-        let again = next_to(prepared, choice, &closer);
-        let is_better = |again: &Flexible| again.rubs && again.noise_std < found.noise_std;
-        let Some(again) = again.ok().filter(is_better) else {
-            break;
-        };
-        let is_enough = again.noise_std > (1.0 - WORTH) * found.noise_std;
-        (rubbing, found) = (closer, again);
-        if is_enough {
-            break;
-        }
-    }
-    found
 }
 
 /// What is fitted, next to these terms of friction.

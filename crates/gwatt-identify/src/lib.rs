@@ -90,7 +90,6 @@ mod spectrum;
 mod spectral_lines;
 mod state_space;
 mod stretch;
-mod stuck;
 mod subspace;
 mod transfer;
 mod error;

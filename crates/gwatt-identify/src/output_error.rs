@@ -13,8 +13,6 @@
 //! Besides the parameters an offset and the state at the first sample are
 //! estimated: a recording may begin in the middle of a motion.
 
-use nalgebra::DMatrix;
-
 use super::charge::charge;
 use super::data::{Data, Signals};
 use super::descent::{Damping, Descending, Step, descend};
@@ -22,7 +20,7 @@ use super::estimate::{Estimate, FRICTION, ROUNDING, criterion};
 use super::figure::Figure;
 use super::normal::{Normal, Solution};
 use super::parameters::{is_admissible, parameters, with};
-use super::sensitivity::{differences, gather, pulls};
+use super::sensitivity::{differences, gather};
 use super::slow_motion::in_band;
 use super::transfer::TransferFunction;
 
@@ -222,32 +220,6 @@ impl<'a> Fitting<'a> {
             (estimate.state, estimate.offset) = nuisance(&rest(&normal, estimate.count)?);
         }
         Some(estimate)
-    }
-
-    /// With errors that hold where the rows of a stretch are off together, and no smaller than
-    /// they were.
-    #[must_use]
-    pub fn with_errors_of_stretches(&self, mut found: Estimate) -> Option<Estimate> {
-        let filtered = self.signals.as_ref().map(|signals| signals.data(&self.raw));
-        let data = filtered.as_ref().unwrap_or(&self.raw);
-        let delay_is_free = found.count > parameters(&found.transfer, false).len();
-        let (model, first) = (&found.transfer, self.taps.len() + data.skip());
-        let normal = gather(data, model, delay_is_free, first, &[])?;
-        let known = rest(&normal, found.count)?;
-        let pulls = pulls(data, model, delay_is_free, first, known.x.as_slice())?;
-        let inverse = solved(&normal)?.inverse;
-        let covariance = &inverse * pulls * &inverse;
-        let wider = |at: usize, was: f64| (was / covariance[(at, at)]).sqrt().max(1.0);
-        let diagonal = found.covariance.diagonal();
-        let scale: Vec<f64> = (0..found.count).map(|at| wider(at, diagonal[at])).collect();
-        found.covariance = DMatrix::from_fn(found.count, found.count, |i, j| {
-            covariance[(i, j)] * scale.get(i).unwrap_or(&1.0) * scale.get(j).unwrap_or(&1.0)
-        });
-        let terms = covariance.nrows().saturating_sub(1 + found.friction.len());
-        for (at, figure) in (terms..).zip(&mut found.friction) {
-            figure.std = figure.std.max(covariance[(at, at)].sqrt());
-        }
-        Some(found)
     }
 }
 

@@ -11,9 +11,7 @@ use super::certainty;
 use super::figure::Figure;
 use super::recording::Recording;
 use super::slow_motion::{SlowMotion, in_band, slow_motion};
-use super::speeds::{Followed, Speed, are_sums, speed_of, speeds};
-use super::stuck::stuck;
-use super::transfer::TransferFunction;
+use super::speeds::{Followed, Speed, are_sums, between, mean_sign, speed_of};
 
 /// A term of friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,23 +48,7 @@ impl Rubbing {
     /// What a recording shows of friction. `None` where it shows none, or has no force
     /// or motion.
     pub(super) fn of(recording: &Recording) -> Option<Self> {
-        Self::going_with(recording, speeds(recording))
-    }
-
-    /// The same with the speed of a model of the axis that sticks where the axis does. `None`
-    /// next to a delay: what friction acts with is not known then.
-    pub(super) fn closer(&self, recording: &Recording, model: &TransferFunction) -> Option<Self> {
-        let slow = self.slow.as_ref().filter(|_| model.delay_s == 0.0)?;
-        let by = Followed {
-            mass: 1.0 / model.gain,
-            viscous: slow.viscous.value.max(0.0),
-            coulomb: slow.coulomb?.value,
-        };
-        Self::going_with(recording, stuck(recording, model, by)?)
-    }
-
-    fn going_with(recording: &Recording, all: Vec<Speed>) -> Option<Self> {
-        let (slow, speed) = slow_motion(recording, all)?;
+        let (slow, speed) = slow_motion(recording)?;
         let sureness = |figure: Figure| sureness(figure.value, figure.std);
         let surest = slow.coulomb.map_or(f64::MIN, sureness);
         if sureness(slow.viscous).max(surest) < certainty::FRICTION {
@@ -187,7 +169,7 @@ impl Term {
     fn input(self, speed: &Speed) -> Vec<f64> {
         match self {
             Self::Viscous => speed.means().to_vec(),
-            Self::Coulomb => speed.signs(),
+            Self::Coulomb => between(&speed.smooth, mean_sign),
             Self::Drift => {
                 let samples = speed.plain.len();
                 let n = samples.max(1) as f64;

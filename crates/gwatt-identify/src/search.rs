@@ -206,12 +206,7 @@ fn on_all(raw: &Data<'_>, chosen: &Chosen, given: Given) -> Option<(Estimate, No
             best = less.unwrap_or(best);
         }
     }
-    if !data.friction.is_empty() {
-        best = next_to_friction::with_errors_of_bursts(&data, &noise.taps, best);
-        best = fitting
-            .with_errors_of_stretches(best.clone())
-            .unwrap_or(best);
-    }
+    let best = next_to_friction::with_errors_of_bursts(&data, &noise.taps, best);
     Some((best, noise))
 }
 

@@ -4,8 +4,6 @@
 //! Rows are made in stretches, column by column, so that the processor can work
 //! on several at once.
 
-use nalgebra::{DMatrix, DVector};
-
 use super::data::Data;
 use super::leaky_integrator::Fading;
 use super::normal::Normal;
@@ -116,57 +114,6 @@ pub fn gather(
     first: usize,
     known: &[f64],
 ) -> Option<Normal> {
-    let mut normal: Option<Normal> = None;
-    each_stretch(
-        data,
-        (transfer, delay_is_free),
-        first,
-        known,
-        |width, live, gaps| {
-            let normal = normal.get_or_insert_with(|| Normal::new(width));
-            normal.add_columns(live, gaps);
-        },
-    )?;
-    normal.filter(|normal| normal.total.is_finite())
-}
-
-/// Sum of squares, as a matrix, of what each stretch of rows pulls the unknowns by: how far
-/// they are off where rows of a stretch are off together.
-#[must_use]
-pub fn pulls(
-    data: &Data<'_>,
-    transfer: &TransferFunction,
-    delay_is_free: bool,
-    first: usize,
-    known: &[f64],
-) -> Option<DMatrix<f64>> {
-    let mut sum: Option<DMatrix<f64>> = None;
-    each_stretch(
-        data,
-        (transfer, delay_is_free),
-        first,
-        known,
-        |width, live, gaps| {
-            let mut pull = DVector::zeros(width);
-            for (index, column) in live {
-                pull[*index] = column.iter().zip(gaps).map(|(x, gap)| x * gap).sum::<f64>();
-            }
-            let sum = sum.get_or_insert_with(|| DMatrix::zeros(width, width));
-            *sum += &pull * pull.transpose();
-        },
-    )?;
-    sum
-}
-
-/// Gives the columns of each stretch of rows that are not over, with how many there are, and
-/// what is left of the output.
-fn each_stretch(
-    data: &Data<'_>,
-    (transfer, delay_is_free): (&TransferFunction, bool),
-    first: usize,
-    known: &[f64],
-    mut take: impl FnMut(usize, &[(usize, &[f64])], &[f64]),
-) -> Option<()> {
     let derivatives = Derivatives::new(data, transfer, delay_is_free)?;
     let base = &derivatives.base;
     let mut bank = derivatives.bank(data);
@@ -175,6 +122,7 @@ fn each_stretch(
     let count = terms.len();
     let states = base.order() + data.fading();
     let width = count + states + data.friction.len() + 1;
+    let mut normal = Normal::new(width);
     let mut columns = vec![[0.0; ROWS]; width];
     *columns.last_mut()? = [1.0; ROWS];
     let mut is_over = vec![false; width];
@@ -236,9 +184,9 @@ fn each_stretch(
             .filter(|(_, (_, over))| !**over)
             .filter_map(|(index, (column, _))| Some((index, column.get(..rows)?)))
             .collect();
-        take(width, &live, gaps.get(..rows)?);
+        normal.add_columns(&live, gaps.get(..rows)?);
     }
-    Some(())
+    normal.total.is_finite().then_some(normal)
 }
 
 /// What terms of friction make of the output, for a factor of 1.

@@ -14,7 +14,7 @@ use super::filter::{derivative, low_pass};
 use super::normal::Normal;
 use super::recording::Recording;
 use super::sandwich::{sandwich, widening};
-use super::speeds::{Followed, Speed, are_sums, between, followed, mean_speed};
+use super::speeds::{Followed, Speed, are_sums, between, followed, mean_sign, mean_speed, speeds};
 
 /// Band in which friction is looked for, Hz, and as a share of the sampling rate at most.
 const SLOW_HZ: f64 = 5.0;
@@ -83,15 +83,13 @@ impl SlowMotion {
     }
 }
 
-/// Mass and friction of a recording, and which of these speeds they go with best. `None` where it
+/// Mass and friction of a recording, and the speed that they go with best. `None` where it
 /// does not show them, or has no force or motion.
-pub(super) fn slow_motion(
-    recording: &Recording,
-    mut all: Vec<Speed>,
-) -> Option<(SlowMotion, Speed)> {
+pub(super) fn slow_motion(recording: &Recording) -> Option<(SlowMotion, Speed)> {
     let t = recording.period_s;
     let force = &recording.get(Quantity::Force)?.values;
     let measured = recording.get(Quantity::Acceleration).map(|it| &it.values);
+    let mut all = speeds(recording);
     // That of a held force: as a mean from sample to sample, as the friction is.
     let acceleration = match measured {
         Some(measured) => between(measured, mean_speed),
@@ -209,7 +207,7 @@ impl Slow {
         let slow = in_band(&speed.means(), t);
         let fastest = slow.iter().fold(0.0_f64, |most, v| v.abs().max(most));
         let slow = thin(&slow, t);
-        let signs = thin(&in_band(&speed.signs(), t), t);
+        let signs = thin(&in_band(&between(&speed.smooth, mean_sign), t), t);
         let moved = slow.iter().zip(&signs);
         let driven = self.acceleration.iter().zip(&self.jerk).zip(&self.force);
         let mut rows: Vec<(Vec<f64>, f64)> = moved

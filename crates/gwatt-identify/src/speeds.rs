@@ -22,10 +22,7 @@ pub(super) struct Speed {
     /// What Coulomb friction goes with: noise would turn its sign.
     pub(super) smooth: Arc<Vec<f64>>,
     /// Means from each sample to the next one, where they are not those of two samples.
-    pub(super) means: Option<Arc<Vec<f64>>>,
-    /// Mean directions from each sample to the next one, where they are not those of a speed
-    /// that runs straight.
-    pub(super) signs: Option<Arc<Vec<f64>>>,
+    means: Option<Arc<Vec<f64>>>,
 }
 
 impl Speed {
@@ -35,7 +32,6 @@ impl Speed {
             smooth: Arc::clone(&plain),
             plain,
             means: None,
-            signs: None,
         }
     }
 
@@ -44,16 +40,6 @@ impl Speed {
     pub(super) fn means(&self) -> Arc<Vec<f64>> {
         let means = self.means.clone();
         means.unwrap_or_else(|| Arc::new(between(&self.plain, mean_speed)))
-    }
-}
-
-impl Speed {
-    /// What Coulomb friction goes with: mean directions from each sample to the next one.
-    pub(super) fn signs(&self) -> Vec<f64> {
-        match &self.signs {
-            Some(signs) => signs.to_vec(),
-            None => between(&self.smooth, mean_sign),
-        }
     }
 }
 
@@ -76,11 +62,6 @@ fn as_held(means: &[f64]) -> Vec<f64> {
         }
     }
     out
-}
-
-/// Speeds of a position from sample to sample.
-pub(super) fn gone(position: &[f64], period_s: f64) -> Vec<f64> {
-    as_held(&between(position, |a, b| (b - a) / period_s))
 }
 
 /// The mean of a speed that runs straight from one value to another.
@@ -114,14 +95,13 @@ pub(super) fn speeds(recording: &Recording) -> Vec<Speed> {
                 smooth,
                 plain: Arc::clone(&plain),
                 means: None,
-                signs: None,
             })
             .collect();
     }
     if let Some(position) = values(Quantity::Position) {
         let smoothed = SMOOTH_POSITION.map(|share| low_pass(position, share / t, t));
         // How far it went is the mean, of fast swings too, which a derivative makes smaller.
-        let means = Arc::new(gone(position, t));
+        let means = Arc::new(as_held(&between(position, |a, b| (b - a) / t)));
         let speeds = smoothed.map(|position| Speed {
             means: Some(Arc::clone(&means)),
             ..Speed::alone(derivative(&position, t))
