@@ -356,6 +356,12 @@ fn what_runs_away_is_stopped() {
         found.ends_with("endless: 50 lines in a row have been executed without a move"),
         "{found}"
     );
+    // A dwell is no move: it waits for a value that nothing here writes.
+    let waits = "#1=0\no1 while [#1 EQ 0]\ng4 p1\no1 endwhile\n";
+    assert_eq!(
+        limited(waits).err().map(|it| it[2..].to_owned()),
+        Some(found[2..].to_owned())
+    );
     let moving = "g91\no1 while [1]\ng0 x1\no1 endwhile\n";
     assert_eq!(
         limited(moving),

@@ -34,6 +34,7 @@ mod jerk_limits;
 mod phases;
 mod places;
 mod over_time;
+mod own_moves;
 mod power;
 mod trace;
 mod rig;

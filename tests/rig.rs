@@ -114,6 +114,8 @@ fn controller() -> Controller {
             power_on_mode: PathMode::ExactStop,
             exact_stop_word: None,
             tool_change: None,
+            tool_change_moves: None,
+            unknown_moves: Vec::new(),
             rapid_uses_feed: false,
             ignored_g: Vec::new(),
             levels: Vec::new(),

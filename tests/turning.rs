@@ -23,6 +23,21 @@ fn words_of_system_a_are_incremental_and_x_is_a_diameter() {
 ");
 }
 
+/// B-64604EN-1, "Chamfering and Corner R": the words of corners have no comma, and the next move
+/// says to which side they are.
+#[test]
+fn corners_of_a_lathe_need_no_comma() {
+    let turned = |z: &str, x: &str| {
+        let program = format!("G97 S1000 M3\nG0 X40. Z5.\nG1 Z-20. {z} F0.1\nX60. {x}\nZ-40.\n");
+        moves("fanuc-lathe", &program)
+    };
+    let commas = turned(",R3.", ",C2.");
+    assert_ne!(commas, turned("", ""));
+    assert_eq!(turned("R3.", "K2."), commas);
+    assert_eq!(turned("R-3.", "K-2."), commas);
+    assert_eq!(turned("I3.", "R2."), turned(",C3.", ",R2."));
+}
+
 /// B-63604EN, "Workpiece Coordinate System (G50, G92)".
 #[test]
 fn coordinates_are_preset_and_shifted() {

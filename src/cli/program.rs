@@ -84,12 +84,12 @@ pub struct ProgramArgs {
         default_value_t = 10_000_000
     )]
     pub max_moves: u64,
-    /// Lines in a row that may be executed without a move
+    /// Lines in a row that may be executed without moving an axis
     #[arg(
         long,
         value_name = "N",
         help_heading = "Program",
-        default_value_t = 10_000_000
+        default_value_t = 1_000_000
     )]
     pub max_idle_lines: u64,
     /// Calls inside one another

@@ -45,11 +45,12 @@ const fn ending(letters: &'static str, profiles: &'static [&'static str], points
 }
 
 /// Endings that only one maker's programs have; `.nc`, `.tap` and `.gcode` say nothing.
-pub(super) const ENDINGS: [Ending; 4] = [
+pub(super) const ENDINGS: [Ending; 5] = [
     ending("mpf", SIEMENS, 8),
     ending("spf", SIEMENS, 8),
     ending("min", OKUMAS, 8),
     ending("ngc", RS274, 4),
+    ending("g", REPRAP, 4),
 ];
 
 const SIEMENS: &[&str] = &["siemens"];
@@ -60,6 +61,7 @@ const GRBL: &[&str] = &["grbl"];
 const RS274: &[&str] = &["linuxcnc", "grbl"];
 const OKUMA: &[&str] = &["okuma"];
 const OKUMAS: &[&str] = &["okuma", "okuma-lathe"];
+const REPRAP: &[&str] = &["reprap"];
 const PRINTERS: &[&str] = &["marlin", "reprap", "klipper"];
 const HAAS: &[&str] = &["haas", "haas-lathe"];
 const MILLS: &[&str] = &["fanuc", "haas", "mitsubishi", "mazak", "syntec"];
@@ -190,6 +192,15 @@ const KLIPPER: &[&str] = &[
     "TURN_OFF_HEATERS",
     "TEMPERATURE_WAIT",
 ];
+/// Lines that begin so are RepRapFirmware's.
+const REPRAP_COMMANDS: &[&str] = &[
+    "VAR ",
+    "GLOBAL ",
+    "SET VAR.",
+    "SET GLOBAL.",
+    "ABORT \"",
+    "ECHO \"",
+];
 const ISG_FLOW: &[&str] = &[
     "$IF",
     "$ELSE",
@@ -214,7 +225,7 @@ const SLICERS: &[&str] = &[
 ];
 
 /// All marks.
-pub(super) const MARKS: [Mark; 64] = [
+pub(super) const MARKS: [Mark; 66] = [
     // TwinCAT NC I
     mark("DynOvr", NCI, 10, |line| line.code().starts_with("DYNOVR")),
     mark("#set param", NCI, 10, |line| {
@@ -368,17 +379,34 @@ pub(super) const MARKS: [Mark; 64] = [
     mark("flavor Klipper", &["klipper"], 5, |line| {
         flavor(line, "KLIPPER")
     }),
-    mark("flavor RepRapFirmware", &["reprap"], 5, |line| {
+    mark("flavor RepRapFirmware", REPRAP, 5, |line| {
         flavor(line, "REPRAP")
     }),
     mark("a command of Klipper", &["klipper"], 8, |line| {
         KLIPPER.iter().any(|start| line.raw().starts_with(start))
     }),
     mark("M420 or M900", &["marlin"], 4, |line| line.m(&[420, 900])),
-    mark("M98 with a file's name", &["reprap"], 8, |line| {
+    mark(
+        "a variable or a command of RepRapFirmware",
+        REPRAP,
+        8,
+        |line| {
+            let starts = |start: &&str| line.code().starts_with(*start);
+            let parts = ["MOVE.AXES[", "SENSORS.PROBES[", "STATE.STATUS", "{VAR."];
+            REPRAP_COMMANDS.iter().any(starts)
+                || parts.iter().any(|part| line.code().contains(part))
+        },
+    ),
+    mark("G1 with H and axes", REPRAP, 3, |line| {
+        line.g(&[10])
+            && line.has_letter(b'H')
+            && !line.g(&[430, 440])
+            && b"XYZU".iter().any(|letter| line.has_letter(*letter))
+    }),
+    mark("M98 with a file's name", REPRAP, 8, |line| {
         line.m(&[98]) && line.raw().contains('"')
     }),
-    mark("M566, M572 or M593", &["reprap"], 5, |line| {
+    mark("M566, M572 or M593", REPRAP, 5, |line| {
         line.m(&[566, 572, 593])
     }),
     // Fanuc and relatives

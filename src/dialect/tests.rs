@@ -54,6 +54,11 @@ fn each_controller_has_its_marks() {
         "G15 or G16 with H in line 1, CALL O in line 2",
     );
     is(
+        "G1 H1 X-215 F1800\nset var.x = {var.x + 1}\nabort \"no probe\"\n",
+        "reprap",
+        "G1 with H and axes in line 1, a variable or a command of RepRapFirmware in line 2",
+    );
+    is(
         "M104 S200\n",
         "marlin reprap klipper",
         "M104 or another heater in line 1",

@@ -5,81 +5,21 @@
 //! says then, and [`Draft::left_out`] says so once.
 
 mod axis;
+mod error;
 mod key;
+mod kind;
 mod parts;
 mod write;
 
 use std::f64::consts::TAU;
-use std::fmt;
-
-use thiserror::Error;
 
 use crate::machine::{ALL_AXES, Machine};
 
 pub use axis::{DraftAxis, Drive};
+pub use error::DraftError;
 pub use key::{Form, KEYS};
+pub use kind::MachineKind;
 pub use parts::{DraftLoad, DraftSpindle};
-
-/// Kinds of machines.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MachineKind {
-    /// A mill: its Z is vertical.
-    Mill,
-    /// A lathe: the axes X and Z.
-    Lathe,
-    /// A router or an engraver: its Z is vertical.
-    Router,
-    /// A printer: its Z is vertical.
-    Printer,
-}
-
-impl MachineKind {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Mill, Self::Lathe, Self::Router, Self::Printer];
-
-    /// Its name.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Mill => "mill",
-            Self::Lathe => "lathe",
-            Self::Router => "router",
-            Self::Printer => "printer",
-        }
-    }
-
-    /// The controller profile that is taken where none is given.
-    #[must_use]
-    pub fn usual_controller(self) -> &'static str {
-        match self {
-            Self::Mill => "iso",
-            Self::Lathe => "fanuc-lathe",
-            Self::Router => "grbl",
-            Self::Printer => "marlin",
-        }
-    }
-
-    /// Letters that its axes can have.
-    #[must_use]
-    pub fn letters(self) -> &'static str {
-        match self {
-            Self::Printer => "XYZUVWE",
-            _ => "XYZUVWABC",
-        }
-    }
-
-    /// Whether an axis goes up and down.
-    #[must_use]
-    pub fn is_vertical(self, letter: char) -> bool {
-        letter == 'Z' && self != Self::Lathe
-    }
-}
-
-impl fmt::Display for MachineKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
 
 /// What is known of a machine.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,31 +42,6 @@ pub struct Draft {
     pub spindle: Option<DraftSpindle>,
     /// Heaters, pumps and the like.
     pub loads: Vec<DraftLoad>,
-}
-
-/// Why there is no machine file.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum DraftError {
-    /// An axis is not described as it should be.
-    #[error("axis `{axis}`: {wrong}")]
-    Axis {
-        /// As it was given, up to the first colon.
-        axis: String,
-        /// What is wrong, and what to do.
-        wrong: String,
-    },
-    /// An axis is described twice.
-    #[error("axis {0} is described twice: keep one of the two")]
-    Twice(char),
-    /// There is none.
-    #[error("a machine needs an axis: --axis X:rapid_mm_min=…,accel_mm_s2=…,table_kg=…")]
-    NoAxes,
-    /// The spindle or a load is not described as it should be.
-    #[error("{0}")]
-    Part(String),
-    /// A power that is none.
-    #[error("{0} must be {1}, in W")]
-    Power(&'static str, &'static str),
 }
 
 impl Draft {
@@ -253,12 +168,5 @@ impl Draft {
             }
         }
         said
-    }
-
-    /// The text of the machine file. `sums` are lines that say what the axes come to, from an
-    /// earlier text that was read back.
-    #[must_use]
-    pub fn machine_file(&self, sums: &str) -> String {
-        write::machine_file(self, sums)
     }
 }

@@ -12,59 +12,64 @@ const COLUMN: usize = 29;
 /// Filament from the wheels to the nozzle, kg: not more than a gram.
 const FILAMENT_KG: f64 = 0.001;
 
-pub(super) fn machine_file(draft: &Draft, sums: &str) -> String {
-    let mut out = String::new();
-    let name = one_line(&draft.name);
-    let _ = writeln!(out, "# {name}, made by `gwatt machine new`");
-    if !sums.is_empty() {
-        out.push_str("#\n# What the axes come to:\n#\n");
-        for line in sums.lines() {
-            let _ = writeln!(out, "# {line}");
+impl Draft {
+    /// The text of the machine file. `sums` are lines that say what the axes come to, from an
+    /// earlier text that was read back.
+    #[must_use]
+    pub fn machine_file(&self, sums: &str) -> String {
+        let mut out = String::new();
+        let name = one_line(&self.name);
+        let _ = writeln!(out, "# {name}, made by `gwatt machine new`");
+        if !sums.is_empty() {
+            out.push_str("#\n# What the axes come to:\n#\n");
+            for line in sums.lines() {
+                let _ = writeln!(out, "# {line}");
+            }
         }
-    }
-    let left_out = draft.left_out();
-    if !left_out.is_empty() {
-        out.push_str("#\n# Not given:\n");
-        for sentence in &left_out {
-            wrapped(&mut out, sentence);
+        let left_out = self.left_out();
+        if !left_out.is_empty() {
+            out.push_str("#\n# Not given:\n");
+            for sentence in &left_out {
+                wrapped(&mut out, sentence);
+            }
         }
-    }
-    let quoted = name.replace('\\', "\\\\").replace('"', "\\\"");
-    let _ = writeln!(out, "schema = 1\nname = \"{quoted}\"");
-    let controller = draft.controller.as_deref();
-    let controller = controller.unwrap_or(draft.kind.usual_controller());
-    let _ = writeln!(out, "controller = \"{controller}\"");
+        let quoted = name.replace('\\', "\\\\").replace('"', "\\\"");
+        let _ = writeln!(out, "schema = 1\nname = \"{quoted}\"");
+        let controller = self.controller.as_deref();
+        let controller = controller.unwrap_or(self.kind.usual_controller());
+        let _ = writeln!(out, "controller = \"{controller}\"");
 
-    out.push_str("\n[converter]\n");
-    line(
-        &mut out,
-        "peak_power_w",
-        draft.supply_w,
-        "what it delivers at most",
-    );
-    if let Some(watts) = draft.feeds_back_w {
-        line(&mut out, "regen_power_w", watts, "what it takes back");
+        out.push_str("\n[converter]\n");
+        line(
+            &mut out,
+            "peak_power_w",
+            self.supply_w,
+            "what it delivers at most",
+        );
+        if let Some(watts) = self.feeds_back_w {
+            line(&mut out, "regen_power_w", watts, "what it takes back");
+        }
+        if let Some(watts) = self.base_load_w {
+            line(&mut out, "base_load_w", watts, "what always runs");
+        }
+        for axis in &self.axes {
+            axis_table(&mut out, axis, self.kind);
+        }
+        if let Some(spindle) = &self.spindle {
+            spindle_table(&mut out, spindle);
+        }
+        for load in &self.loads {
+            load_table(&mut out, load);
+        }
+        out.push_str("\n[limits]\n");
+        line(
+            &mut out,
+            "margin",
+            0.1,
+            "share of the peak power that is kept free",
+        );
+        out
     }
-    if let Some(watts) = draft.base_load_w {
-        line(&mut out, "base_load_w", watts, "what always runs");
-    }
-    for axis in &draft.axes {
-        axis_table(&mut out, axis, draft.kind);
-    }
-    if let Some(spindle) = &draft.spindle {
-        spindle_table(&mut out, spindle);
-    }
-    for load in &draft.loads {
-        load_table(&mut out, load);
-    }
-    out.push_str("\n[limits]\n");
-    line(
-        &mut out,
-        "margin",
-        0.1,
-        "share of the peak power that is kept free",
-    );
-    out
 }
 
 fn axis_table(out: &mut String, axis: &DraftAxis, kind: MachineKind) {

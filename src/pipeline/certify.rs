@@ -8,16 +8,18 @@
 //! went up, (d) the effective feed of each untouched move is what it was.
 
 mod compare;
+mod divided;
 mod pieces;
 mod reasons;
 mod spindle;
 mod stands;
 
+use reasons::BUG;
 use std::collections::VecDeque;
 
 pub(super) use compare::DOES_NOT_FIT;
 use compare::compare;
-use pieces::{Found, Pieces};
+use divided::{Found, Pieces};
 pub(super) use reasons::Reasons;
 use stands::Stands;
 
@@ -468,8 +470,6 @@ impl<'m, 'r> Verdict<'m, 'r> {
 
 /// What is missing before a move.
 const NO_STOP: &str = "no stop before it, where a rapid stopped,";
-
-const BUG: &str = "nothing was written; this is a fault of gwatt, please report it";
 
 /// Whether two values are one; a place that is not known is not a number.
 fn same(a: f64, b: f64) -> bool {

@@ -192,7 +192,8 @@ impl Entry {
         let edit = self.keeps_its_words(skips);
         let no_feed = self.cannot_get_feed(machine, mv);
         // A rapid gets a feed per minute of its own, whatever F means.
-        let apart = mv.kind == MoveKind::Rapid && !self.sets_feed_mode();
+        let apart = mv.kind == MoveKind::Rapid
+            && (self.feed_mode_words().next().is_none() || self.may_be_per_minute());
         let feed = [
             (facts.homes, "it homes the axes"),
             (facts.dwell_takes_feed, "an F in it would be its dwell"),
@@ -377,12 +378,23 @@ impl Entry {
         self.moves == 1 && self.facts.feed_word.is_some() && !self.facts.compensated
     }
 
-    /// Whether one of its words may say what F means.
-    fn sets_feed_mode(&self) -> bool {
-        let mut words = self.block.words.iter();
+    /// The numbers of its G words that may say what F means.
+    fn feed_mode_words(&self) -> impl Iterator<Item = f64> {
         let says =
             |number: f64| (93.0..=99.0).contains(&number) || (930.0..=979.0).contains(&number);
-        words.any(|word| word.letter == b'G' && says(word.value))
+        let words = self.block.words.iter().filter(|word| word.letter == b'G');
+        words.map(|word| word.value).filter(move |it| says(*it))
+    }
+
+    /// Whether it says by a single word that F is by the revolution, in whose place one for
+    /// feeds per minute may stand.
+    fn may_be_per_minute(&self) -> bool {
+        let mut words = self.feed_mode_words();
+        let says = |number: f64| number == 95.0 || number == 99.0;
+        self.feed_mode == FeedMode::PerRevolution
+            && !self.facts.compensated
+            && words.next().is_some_and(says)
+            && words.next().is_none()
     }
 
     /// Why a move for which no F is in force cannot have one.

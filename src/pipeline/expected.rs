@@ -49,6 +49,13 @@ impl Asked {
         }
     }
 
+    /// Whether it obeys F, and none is in force.
+    pub(super) fn has_no_feed(&self) -> bool {
+        self.kind == MoveKind::Feed
+            && self.feed_mode == FeedMode::PerMinute
+            && self.feed_mm_s == f64::INFINITY
+    }
+
     /// Whether it is a move of the same kind, with F meant in the same way.
     fn is_like(&self, mv: &Move) -> bool {
         self.kind == mv.kind && self.feed_mode == mv.feed_mode

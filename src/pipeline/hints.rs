@@ -5,7 +5,7 @@ use std::io::{self, Read, Seek};
 
 use super::advice::{FEED_OPTION, FITS, SPINDLE_HELP};
 use super::expand::WRITTEN_OUT;
-use super::limiting::limit;
+use super::limiting::{first_reasons, limit};
 use super::pause;
 use super::summary::AT_LENGTH_MAX;
 use super::{
@@ -43,18 +43,6 @@ pub fn take_hints<R: Read + Seek + Send>(
     if summary.unfit_count == 0 {
         return Ok(());
     }
-    let mut reasons = |allow_expand,
-                       rows: Option<&mut dyn RestartRows>|
-     -> Result<BTreeMap<u64, Diagnostic>, Failure> {
-        input.rewind().map_err(Failure::Input)?;
-        let how = advised(allow_expand);
-        let limited = limit(&mut input, machine, options, how, io::sink(), rows)?;
-        let mut reasons = BTreeMap::new();
-        for reason in limited.reasons {
-            reasons.entry(reason.line).or_insert(reason);
-        }
-        Ok(reasons)
-    };
     let unfit = summary.unfit.iter().chain(&summary.worst);
     let lines = unfit.filter(|unfit| unfit.file.is_empty());
     let mut written = Written {
@@ -62,7 +50,16 @@ pub fn take_hints<R: Read + Seek + Send>(
     };
     // Of longer programs the advice is that for each move by itself, and says so.
     let looks = summary.moves <= AT_LENGTH_MAX;
-    let rows = looks.then_some(&mut written as &mut dyn RestartRows);
+    let mut reasons = |expand, rows: Option<&mut dyn RestartRows>| {
+        input.rewind().map_err(Failure::Input)?;
+        let how = advised(expand);
+        let found = if looks {
+            limit(&mut input, machine, options, how, io::sink(), rows)?.reasons
+        } else {
+            first_reasons(&mut input, machine, options, how)?
+        };
+        Ok(first_by_line(found))
+    };
     if !looks {
         for unfit in summary.unfit.iter_mut().chain(&mut summary.worst) {
             if unfit.help.starts_with(FITS) {
@@ -70,7 +67,7 @@ pub fn take_hints<R: Read + Seek + Send>(
             }
         }
     }
-    let as_it_stands = reasons(false, rows)?;
+    let as_it_stands = reasons(false, Some(&mut written))?;
     for unfit in summary.unfit.iter_mut().chain(&mut summary.worst) {
         let refused = as_it_stands.contains_key(&unfit.line);
         let line = written.lines.get(&unfit.line).filter(|_| !refused);
@@ -91,6 +88,15 @@ pub fn take_hints<R: Read + Seek + Send>(
     }
     use_reasons(summary, &as_it_stands, &reasons(true, None)?);
     Ok(())
+}
+
+/// The first reason of each line.
+fn first_by_line(found: Vec<Diagnostic>) -> BTreeMap<u64, Diagnostic> {
+    let mut reasons = BTreeMap::new();
+    for reason in found {
+        reasons.entry(reason.line).or_insert(reason);
+    }
+    reasons
 }
 
 /// Puts the limiter's own reasons in place of the advice for lines that it could not lower: as the

@@ -3,7 +3,7 @@
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
-use std::io::{Cursor, Read, Seek, Write};
+use std::io::{self, Cursor, Read, Seek, Write};
 
 use super::analyze::judge;
 use super::conclusion::holds_one_way;
@@ -14,7 +14,7 @@ use super::pace::{by_acceleration, sooner};
 use super::pause::limit_waiting;
 use super::preset_notes::{NO_PRESET, NOT_SET};
 use super::readable::readable;
-use super::rounds::{Job, restart};
+use super::rounds::{Job, Rounds, restart};
 use super::row::Detail;
 use super::stops;
 use super::strategy::{check_strategy, trusting};
@@ -43,22 +43,57 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
     output: W,
     mut rows: Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
-    if let Some((machine, note)) = trusting(machine, how) {
-        let mut summary = limit(input, &machine, options, how, output, rows)?;
+    let wanted = Wanted {
+        how,
+        rounds: Rounds::All,
+    };
+    limit_as_wanted(input, machine, options, wanted, output, &mut rows)
+}
+
+/// Why moves of a program cannot be lowered, as far as its first round of limiting shows: of long
+/// programs that takes a small part of the time of [`limit`].
+///
+/// # Errors
+/// See [`Failure`].
+pub(super) fn first_reasons<R: Read + Seek + Send>(
+    input: R,
+    machine: &Machine,
+    options: &Options,
+    how: LimitOptions,
+) -> Result<Vec<Diagnostic>, Failure> {
+    let wanted = Wanted {
+        how,
+        rounds: Rounds::First,
+    };
+    limit_as_wanted(input, machine, options, wanted, io::sink(), &mut None)
+        .map(|summary| summary.reasons)
+}
+
+/// What is wanted of the limiter.
+#[derive(Clone, Copy)]
+struct Wanted {
+    how: LimitOptions,
+    rounds: Rounds,
+}
+
+/// See [`limit`].
+fn limit_as_wanted<R: Read + Seek + Send, W: Write + Restart + Send>(
+    input: R,
+    machine: &Machine,
+    options: &Options,
+    wanted: Wanted,
+    output: W,
+    rows: &mut Option<&mut dyn RestartRows>,
+) -> Result<LimitSummary, Failure> {
+    if let Some((machine, note)) = trusting(machine, wanted.how).or_else(|| readable(machine)) {
+        let mut summary = limit_as_wanted(input, &machine, options, wanted, output, rows)?;
         summary.before.notes.push(note);
         return Ok(summary);
     }
-    if let Some((machine, note)) = readable(machine) {
-        let mut summary = limit(input, &machine, options, how, output, rows)?;
-        summary.before.notes.push(note);
-        return Ok(summary);
-    }
-    check_strategy(machine, how)?;
-    let mut summary = limit_ways(input, machine, options, how, output, &mut rows)?;
-    summary
-        .before
-        .notes
-        .extend(unmarked(options, how, &summary));
+    check_strategy(machine, wanted.how)?;
+    let mut summary = limit_ways(input, machine, options, wanted, output, rows)?;
+    let notes = unmarked(options, wanted.how, &summary);
+    summary.before.notes.extend(notes);
     Ok(summary)
 }
 
@@ -69,6 +104,7 @@ struct Asked<'a> {
     /// How it is read, on each path through it.
     paths: &'a [Options],
     how: LimitOptions,
+    rounds: Rounds,
 }
 
 /// Limits a program on all ways through it.
@@ -76,10 +112,11 @@ fn limit_ways<R: Read + Seek + Send, W: Write + Restart + Send>(
     mut input: R,
     machine: &Machine,
     options: &Options,
-    how: LimitOptions,
+    wanted: Wanted,
     mut output: W,
     rows: &mut Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
+    let Wanted { how, rounds } = wanted;
     let paths = if has_ways(options) {
         let paths = ways(&mut input, machine, options, false)?;
         input.rewind().map_err(Failure::Input)?;
@@ -91,6 +128,7 @@ fn limit_ways<R: Read + Seek + Send, W: Write + Restart + Send>(
         machine,
         paths,
         how,
+        rounds,
     };
     let mut as_asked = limit_paths(&mut input, asked(&paths), &mut output, rows)?;
     if !as_asked.may_skip {
@@ -163,6 +201,7 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
         machine,
         paths,
         how,
+        ..
     } = asked;
     let Some(program) = read_whole(&mut input)? else {
         return Ok(first);
@@ -263,6 +302,7 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
         machine,
         paths,
         how,
+        rounds,
     } = asked;
     let places = Cell::new(Vec::new());
     let learned = Cell::new(None);
@@ -277,6 +317,7 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
             paths,
             how,
             plan,
+            rounds,
         };
         let found = job.rounds(start, &mut input, &mut output, rows, again)?;
         places.set(found.places);
@@ -285,6 +326,9 @@ fn limit_text<R: Read + Seek + Send, W: Write + Restart + Send>(
     };
     let stands = how.allowed.pause.then_some(Plan::NEVER);
     let first = attempt_with(how, machine, stands, Depths::default(), false)?;
+    if rounds == Rounds::First {
+        return Ok(first);
+    }
     let first = sooner(how, first, &mut |paces| {
         let start = paces.map_or_else(Depths::default, Depths::by_measure);
         let found = attempt_with(how, machine, stands, start, true)?;

@@ -1,9 +1,8 @@
 //! Limits over time, with the names of converters and files.
 
-use super::Summary;
 use crate::diagnostic::Diagnostic;
 use crate::machine::{Machine, OverrideAt};
-use crate::power::{Ladder, Measure, Rating};
+use crate::power::{Measure, Rating};
 
 use crate::units::SECONDS_PER_MINUTE;
 
@@ -18,20 +17,6 @@ pub struct OverTime {
     pub file: String,
     /// The program is known to have a place where it could wait, which is not permitted yet.
     pub may_pause: bool,
-}
-
-impl Summary {
-    /// What settles limits over time at lower overrides.
-    pub(super) fn ladder(&self, machine: &Machine) -> Ladder {
-        let ratings: Vec<Rating> = self.over_time.iter().map(|found| found.rating).collect();
-        let peaks_w = [self.peak_w, self.regen_w];
-        Ladder::new(machine, &ratings, self.moves, self.knobs, peaks_w)
-    }
-
-    /// Takes what it found.
-    pub(super) fn settle(&mut self, ladder: &Ladder) {
-        ladder.conclude(self.over_time.iter_mut().map(|found| &mut found.rating));
-    }
 }
 
 impl OverTime {

@@ -3,8 +3,8 @@
 
 use super::Reading;
 use crate::diagnostic::Diagnostic;
-use crate::interpret::{Diagnostics, Effects, Facts, Interpreter};
-use crate::machine::{AXES, AxisValues, KnobTarget, Machine};
+use crate::interpret::{Diagnostics, Effects, Facts, Interpreter, KnobState};
+use crate::machine::{AXES, AxisValues, KnobTarget, Machine, builtin_controller};
 use crate::rewrite::knob_lines;
 use crate::syntax::{Block, scan_line};
 
@@ -32,9 +32,11 @@ pub(super) fn readable(machine: &Machine) -> Option<(Machine, Diagnostic)> {
         .map(|(knob, _)| knob.name.trim_end_matches('='))
         .collect();
     let message = format!(
-        "programs are read as `{}` reads them, which has no {}: it is not written",
+        "programs are read as `{}` reads them, which does not have {} as `{}` does: it is not \
+         written",
         controller.language.name,
-        names.join(", ")
+        names.join(", "),
+        controller.name
     );
     let mut reading = machine.clone();
     let mut read = read.into_iter();
@@ -43,18 +45,32 @@ pub(super) fn readable(machine: &Machine) -> Option<(Machine, Diagnostic)> {
     Some((reading, Diagnostic::note("unread-word", message)))
 }
 
-/// Whether the lines of a word do what they are to do.
+/// Whether the lines of a word do what they do on the machine's own controller: M203 of Marlin
+/// is in mm/s, that of RepRapFirmware in mm/min.
 fn is_read(machine: &Machine, index: usize) -> bool {
     let values = tried(machine, index);
     let Some(lines) = values.and_then(|values| knob_lines(machine, index, &values)) else {
         // It is never written by itself.
         return true;
     };
+    let Some(found) = after(machine, &lines) else {
+        return false;
+    };
+    builtin_controller(&machine.controller.name).is_none_or(|own| {
+        let mut meant = machine.clone();
+        meant.controller.language = own.language;
+        after(&meant, &lines).is_some_and(|meant| meant == found)
+    })
+}
+
+/// The limits in force after the lines of a word; `None` where they change nothing, or are not
+/// read.
+fn after(machine: &Machine, lines: &[String]) -> Option<KnobState> {
     let mut interpreter = Interpreter::new(machine, &Reading::default());
     let before = interpreter.knobs().clone();
     let (mut block, mut facts) = (Block::default(), Facts::default());
     let (mut steps, mut found) = (Vec::new(), Diagnostics::default());
-    for (number, line) in (1..).zip(&lines) {
+    for (number, line) in (1..).zip(lines) {
         scan_line(line.as_bytes(), number == 1, &mut block);
         let text = line.as_bytes();
         interpreter.execute(
@@ -64,7 +80,8 @@ fn is_read(machine: &Machine, index: usize) -> bool {
             Effects::new(&mut steps, &mut facts, &mut found),
         );
     }
-    found.list.is_empty() && *interpreter.knobs() != before
+    let found = Some(interpreter.knobs()).filter(|_| found.list.is_empty());
+    found.filter(|found| **found != before).cloned()
 }
 
 /// Values that a word is tried with; `None` where there is no such word.

@@ -43,6 +43,16 @@ pub(super) struct Job<'a> {
     pub(super) how: LimitOptions,
     /// Where the program waits, if it may.
     pub(super) plan: Option<Plan>,
+    pub(super) rounds: Rounds,
+}
+
+/// How often a program is limited.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Rounds {
+    /// Once: which moves cannot be lowered shows then.
+    First,
+    /// Until it fits next to its own changes, or cannot be made to.
+    All,
 }
 
 /// What came of it.
@@ -87,7 +97,9 @@ impl Job<'_> {
             }
             let mut asked = Lower::default();
             let (mut stuck, mut in_vain) = (false, false);
-            let more = if certified.deeper.is_empty() {
+            let more = if self.rounds == Rounds::First {
+                false
+            } else if certified.deeper.is_empty() {
                 let ladder = ladder.get_or_insert_with(|| certified.summary.ladder(self.machine));
                 ladder.take(&certified.summary.lower);
                 if certified.reasons.count == 0 && certified.summary.fits_at_largest() {
@@ -149,6 +161,7 @@ impl Job<'_> {
             paths,
             how,
             plan,
+            ..
         } = *self;
         let whole = LoopedProgram {
             machine,

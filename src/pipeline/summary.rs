@@ -2,8 +2,8 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::interpret::MoveKind;
-use crate::machine::AxisSet;
-use crate::power::Rating;
+use crate::machine::{AxisSet, Machine};
+use crate::power::{Ladder, Rating};
 
 use super::by_line::LineSummary;
 use super::executor::ONLY_SUBPROGRAMS;
@@ -139,4 +139,18 @@ pub struct LimitSummary {
     /// What a word for acceleration would bring, where that was asked for and is worth a
     /// line: see [`ideal`](super::ideal).
     pub ideal: Option<Ideal>,
+}
+
+impl Summary {
+    /// What settles limits over time at lower overrides.
+    pub(super) fn ladder(&self, machine: &Machine) -> Ladder {
+        let ratings: Vec<Rating> = self.over_time.iter().map(|found| found.rating).collect();
+        let peaks_w = [self.peak_w, self.regen_w];
+        Ladder::new(machine, &ratings, self.moves, self.knobs, peaks_w)
+    }
+
+    /// Takes what it found.
+    pub(super) fn settle(&mut self, ladder: &Ladder) {
+        ladder.conclude(self.over_time.iter_mut().map(|found| &mut found.rating));
+    }
 }

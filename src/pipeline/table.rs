@@ -40,6 +40,7 @@ pub(super) struct Table {
     restored: HashMap<LineKey, Decision>,
 }
 
+mod cuts;
 mod spread;
 
 #[derive(Debug)]
@@ -156,7 +157,7 @@ impl Table {
         if let Some(entered) = self.lines.get_mut(&line) {
             entered.one_corner &= entered.sight.corner == sight.corner;
             entered.lacks_feed |= entry.lacks_feed();
-            entered.cuts_by_feed &= spread::cuts_by_feed(entry, self.skips);
+            entered.cuts_by_feed &= cuts::cuts_by_feed(entry, self.skips);
             entered.one_feed &= entered.sight.feed == sight.feed;
             let length = |feed: &FeedValue| feed.value * feed.mm_per_unit;
             let known = entered.lowest_feed.into_iter().chain(sight.feed);
@@ -174,7 +175,7 @@ impl Table {
             unanimous: true,
             one_feed: true,
             leaves_feed: false,
-            cuts_by_feed: spread::cuts_by_feed(entry, self.skips),
+            cuts_by_feed: cuts::cuts_by_feed(entry, self.skips),
             lowers: false,
             one_corner: true,
             lacks_feed: entry.lacks_feed(),

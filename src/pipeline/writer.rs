@@ -8,6 +8,7 @@ mod judging;
 mod noted;
 mod stopping;
 mod waiting;
+mod waits;
 
 use std::collections::VecDeque;
 use std::io::{Read, Seek, Write};
@@ -34,8 +35,8 @@ use crate::limit::{Change, FirstFeed, Limiter, Outcome};
 use crate::machine::{Machine, PathMode};
 use crate::power::{Assessment, Assessor, PowerModel};
 use crate::rewrite::{BlockView, Comment, Mark, Rewriter};
-pub(super) use waiting::Plan;
-use waiting::Waits;
+pub(super) use waits::Plan;
+use waits::Waits;
 
 /// Bytes of a piece that is handed to the certifier: so few that the moves of
 /// two pieces stay in the processor's cache.

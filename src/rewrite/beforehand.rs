@@ -110,7 +110,8 @@ impl Return<'_> {
             out.extend_from_slice(words.as_bytes());
             out.extend_from_slice(line_end);
         };
-        if self.tool_change.is_none() && self.changes_tool() {
+        let of_itself = self.moves_of_itself();
+        if self.tool_change.is_none() && self.changes_tool() && !of_itself {
             return Err(TOOL_CHANGE_UNKNOWN);
         }
         let mut last = None;
@@ -119,7 +120,7 @@ impl Return<'_> {
                 return Err("not all of its moves are rapids");
             }
             let mut words = self.way(mv, &place(&mv.end));
-            if last.is_none() {
+            if last.is_none() && !of_itself {
                 // What is switched before the axes move.
                 for word in self.switching() {
                     words.push(' ');
@@ -133,7 +134,11 @@ impl Return<'_> {
         if !self.absolute_before {
             push("G91");
         }
-        let mut edits = self.words_at(text, &last);
+        let mut edits = if of_itself {
+            Vec::new()
+        } else {
+            self.words_at(text, &last)
+        };
         if !apply(text, &mut edits, &mut out) {
             return Err("its words overlap");
         }
@@ -167,6 +172,12 @@ impl Return<'_> {
 
     fn changes_tool(&self) -> bool {
         self.block.words.iter().any(is_tool_change)
+    }
+
+    /// Whether the change of the tool moves the axes, for which the block has no words.
+    fn moves_of_itself(&self) -> bool {
+        let mut words = self.block.words.iter();
+        self.changes_tool() && !words.any(|word| AxisId::from_letter(word.letter).is_some())
     }
 
     /// A rapid to the end of a move, in absolute coordinates: where it begins may be known

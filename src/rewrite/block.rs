@@ -8,8 +8,7 @@ mod view;
 mod within;
 mod words;
 
-pub use pieces::PieceWords;
-pub use view::{BlockView, FeedAround};
+pub use view::{BlockView, FeedAround, PieceWords};
 
 use label::Label;
 use tool_words::{tool_line, without, without_tool};

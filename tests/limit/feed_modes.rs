@@ -161,18 +161,24 @@ fn an_inverse_time_is_lowered_block_by_block() {
     assert_ne!(code, 0, "{errors}");
 }
 
-/// A block that says itself what F means stays as it is.
+/// A block that says itself that F is by the revolution gets the word for feeds per minute in its
+/// place; one with an inverse time stays as it is.
 #[test]
 fn the_word_of_the_block_itself() {
-    let shop = shop("siemens", 600.0);
+    let program = "G18 G54 G90 G60 S2000 M3\nG0 G95 X400 Z300\nG1 Z250 F0.2\nM30\n";
+    assert_snapshot!(shop("siemens", 600.0).limited(program, ""), @r"
+    G18 G54 G90 G60 S2000 M3
+    G1 G94 X400 Z300 F26966
+    G0 G95
+    G1 Z250 F0.2
+    M30
+    ");
+    let shop = shop("fanuc", 600.0);
     shop.put(
         "a.nc",
-        "G18 G54 G90 G60 S2000 M3\nG0 G95 X400 Z300\nG1 Z250 F0.2\nM30\n",
+        "G21 G90 G54\nG93 G0 X400. Y300.\nG1 X390. F100.\nM30\n",
     );
     let (code, _, errors) = shop.run("limit a.nc");
     assert_eq!(code, 1, "{errors}");
-    assert!(
-        errors.contains("the feed in force is per revolution"),
-        "{errors}"
-    );
+    assert!(errors.contains("its feed is an inverse time"), "{errors}");
 }

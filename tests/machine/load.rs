@@ -206,7 +206,6 @@ fn words_that_a_machine_ignores() {
             .contains("`ignored_macros` belongs to the controllers of printers")
     );
     assert!(
-        refused("haas", "unknown_moves = [\"START\"]")
-            .contains("`unknown_moves` belongs to the controllers of printers")
+        refused("haas", "unknown_moves = [\"START\"]").contains("\"START\" is not a G or M word")
     );
 }

@@ -70,7 +70,7 @@ impl fmt::Display for Judgement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ExciteLonger { times } if *times > TIMES_MAX => f.write_str(
-                "excite longer: no length that one records is enough; excite with more amplitude, or with more power where the axis resonates",
+                "excite longer: no practical length is enough; excite with more amplitude, or with more power where the axis resonates",
             ),
             Self::ExciteLonger { times } => write!(
                 f,

@@ -65,7 +65,7 @@ impl<R: Read> Rows<R> {
                 if is_wide {
                     "the file is UTF-16"
                 } else {
-                    "the file is no text: there are bytes of 0 in it"
+                    "the file is not text: it contains NUL bytes"
                 },
                 "export it as CSV in UTF-8; the first line names the columns, such as time_s,torque_nm,position_mm",
             ));

@@ -64,6 +64,14 @@ impl Format {
                 }
             }
         }
+        // Comments of Klipper's samples have lines of `Configuration.h`, whose own lines never
+        // are sections.
+        let mut lines = texts.iter().flat_map(|text| &text.lines);
+        if lines.any(|line| line.starts_with("[printer]") || line.starts_with("[stepper_"))
+            && let Some(defines) = marks.get_mut(Format::MarlinConfig as usize)
+        {
+            *defines = 0;
+        }
         let most = marks.iter().copied().max().filter(|most| *most > 0)?;
         let mut best = FORMATS
             .iter()

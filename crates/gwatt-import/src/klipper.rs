@@ -3,15 +3,19 @@
 //! Sources: Klipper documentation, "Configuration reference"; defaults of the extruder's own
 //! limits from `klippy/kinematics/extruder.py`.
 
+mod bodies;
 mod carriages;
+mod config;
+mod homing;
 mod macros;
 
+use config::Config;
 use std::f64::consts::PI;
 
 use gwatt_machine::AxisId;
 
 use crate::found::{Build, Figure, Found, FoundAxis, entry, highest, shown};
-use crate::ini::{Item, Style, items, last};
+use crate::ini::{Style, items, last};
 use crate::kinematics;
 use crate::near::Job;
 use crate::text::Log;
@@ -37,32 +41,6 @@ const MIN: f64 = 60.0;
 pub(crate) fn include(line: &str) -> Option<&str> {
     let name = line.strip_prefix("[include ")?.split(']').next()?.trim();
     (!name.is_empty()).then_some(name)
-}
-
-/// Values of the files.
-pub(crate) struct Config<'i, 't> {
-    items: &'i [Item<'t>],
-}
-
-impl Config<'_, '_> {
-    /// A value above 0.
-    fn positive(&self, log: &mut Log, section: &str, key: &str) -> Option<Figure> {
-        let item = last(self.items, section, key)?;
-        let value = log.positive(&item.place, item.value, &format!("`{key}`"))?;
-        Some(Figure::new(value, item.source()))
-    }
-
-    /// Any number.
-    fn number(&self, log: &mut Log, section: &str, key: &str) -> Option<Figure> {
-        let item = last(self.items, section, key)?;
-        let value = log.number(&item.place, item.value)?;
-        Some(Figure::new(value, item.source()))
-    }
-
-    fn has(&self, section: &str) -> bool {
-        let mut items = self.items.iter();
-        items.any(|item| item.section.eq_ignore_ascii_case(section))
-    }
 }
 
 /// Reads the configuration.
@@ -98,7 +76,8 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
     }
     extruder(&config, &mut found, log, velocity.as_ref(), accel.as_ref());
     corners(&config, &mut found, log, accel.as_ref());
-    macros::named(&items, &mut found);
+    homing::safe_z(&config, &mut found, log);
+    macros::named(job, &items, &mut found, log);
     found
 }
 

@@ -129,7 +129,7 @@ fn unknown(files: &[File]) -> Diagnostic {
     let first = files
         .first()
         .map_or(String::new(), |file| file.name.clone());
-    let message = "what kind of settings these are is not seen from them";
+    let message = "the file does not show what kind of settings these are";
     let mut refused = Diagnostic::error("import-file", message);
     refused.file = Some(first);
     refused.help(format!("say it: --format {}", names.join(", ")))

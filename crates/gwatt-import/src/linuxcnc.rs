@@ -3,17 +3,19 @@
 //! Source: LinuxCNC documentation, "INI Configuration", "G-Code Quick Reference". Speeds are
 //! in machine units per second; `[AXIS_n]` of a number is that of versions before 2.8.
 
+mod changes;
 mod hal;
+mod kinematics_module;
 
+use kinematics_module::by_name;
 use std::path::Path;
 
 use gwatt_machine::AxisId;
 
 use crate::found::{Build, Figure, Found, entry, highest, shown};
 use crate::ini::{Item, Style, items, last};
-use crate::kinematics;
 use crate::near::{Job, Near};
-use crate::text::{File, Log, Place};
+use crate::text::{File, Log};
 use hal::Hal;
 
 /// How its files are written.
@@ -104,6 +106,8 @@ pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
     }
     trajectory(&config, &mut found, log);
     start_up(&config, &mut found, log);
+    changes::tool_change(&config, &mut found, log);
+    changes::remaps(&config, &mut found, log);
     corners(&config, &mut found, log);
     for name in ["SPINDLE_0", "SPINDLE"] {
         if found.spindle_rpm.is_none() {
@@ -175,15 +179,6 @@ fn kinematics_of(config: &Config<'_>, found: &mut Found, log: &mut Log) {
     };
     let name = item.value.split_whitespace().next().unwrap_or("");
     by_name(name, item.whole, &item.place, found, log);
-}
-
-/// What a module of kinematics makes of the machine. `gantrykins` gives axes several joints.
-fn by_name(name: &str, whole: &str, place: &Place<'_>, found: &mut Found, log: &mut Log) {
-    match name {
-        "trivkins" | "gantrykins" | "" => {}
-        "corexykins" => kinematics::core(found, log, place, whole, Some("corexy")),
-        other => kinematics::refuse(log, place, other),
-    }
 }
 
 /// The letters of the axes, each with its joints in the order of `coordinates=`.

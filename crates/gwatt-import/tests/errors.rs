@@ -124,16 +124,12 @@ fn machines_that_gwatt_does_not_describe() {
 
 #[test]
 fn files_of_no_kind() {
-    assert_snapshot!(refused("G1 X10 F100\n"), @r"
-    settings:0, error: what kind of settings these are is not seen from them / say it: --format linuxcnc, grbl, fluidnc, marlin, marlin-config, klipper, reprap, fanuc, siemens
-    ");
+    assert_snapshot!(refused("G1 X10 F100\n"), @"settings:0, error: the file does not show what kind of settings these are / say it: --format linuxcnc, grbl, fluidnc, marlin, marlin-config, klipper, reprap, fanuc, siemens");
     assert_snapshot!(refused("$0=10\n$1=25\n"), @r"
     settings:0, error: no speed and no acceleration of an axis was found, read as grbl / give the file that holds them, or another --format
     ");
     // Marlin's units are mm/s and RepRapFirmware's mm/min: nothing is guessed.
-    assert_snapshot!(refused("M203 X500 Y500\nM201 X500 Y500\nM208 X200\nM569 P0 S1\n"), @r"
-    settings:0, error: what kind of settings these are is not seen from them / say it: --format linuxcnc, grbl, fluidnc, marlin, marlin-config, klipper, reprap, fanuc, siemens
-    ");
+    assert_snapshot!(refused("M203 X500 Y500\nM201 X500 Y500\nM208 X200\nM569 P0 S1\n"), @"settings:0, error: the file does not show what kind of settings these are / say it: --format linuxcnc, grbl, fluidnc, marlin, marlin-config, klipper, reprap, fanuc, siemens");
     assert_snapshot!(refused("a\0b"), @r"
     settings:0, error: settings is a binary file, or text in UTF-16 / save it as plain text (ASCII or UTF-8)
     ");

@@ -1,5 +1,6 @@
 //! Settings of controls to machine files, from the outside.
 
+mod commands;
 mod controls;
 mod errors;
 mod firmware;

@@ -26,6 +26,7 @@ impl Control<'_> {
         self.settings(run);
         self.note_queue_and_spindle(run);
         self.turn_knobs(run);
+        self.lathe_corner(run);
         self.motion_in_mode(run);
         if run.report.diagnostics.errors == errors {
             self.complain_about_rest(run);

@@ -163,3 +163,12 @@ impl GCode {
         }
     }
 }
+
+/// What a dialect makes of a G word.
+pub(crate) enum Own {
+    Code(GCode),
+    /// It does not have it.
+    Missing,
+    /// What the family makes of it.
+    Common,
+}

@@ -5,12 +5,14 @@
 //! Fanuc B-63944EN and B-63604EN ("Decimal Point Programming", "G Code List in
 //! T Series", "Skip Function (G31)"), Haas mill and lathe operator's manuals.
 
+mod follow_points;
+mod lathe_corner;
 mod point_kinds;
 mod words;
 
 pub(super) use point_kinds::PointKinds;
 
-use super::code::{GCode, Motion};
+use super::code::{GCode, Motion, Own};
 use super::turning::{BOX, FACE, THREAD, THREAD_BOX};
 use gwatt_machine::units::MM_PER_INCH;
 use gwatt_machine::{Dialect, Lathe};
@@ -28,15 +30,6 @@ const LEAST_DEG: f64 = 1e-3;
 const LENGTHS: &[u8] = b"XYZUVWABCIJKR";
 /// Words of system A with the axes along which they are incremental.
 const INCREMENTAL: [(u8, u8); 4] = [(b'U', b'X'), (b'V', b'Y'), (b'W', b'Z'), (b'H', b'C')];
-
-/// What a dialect makes of a G word.
-pub(super) enum Own {
-    Code(GCode),
-    /// It does not have it.
-    Missing,
-    /// What the family makes of it.
-    Common,
-}
 
 /// The G word with this number × 10, where the dialect has a meaning of its own
 /// for it.

@@ -11,10 +11,11 @@ use super::knob::KnobState;
 use super::languages::language_of;
 use super::modal::Modal;
 use super::parameters::Parameters;
-use super::position::{Position, Reading};
+use super::position::Position;
 use super::printer;
 use super::probe::Probe;
 use super::program_coordinates::Programmed;
+use super::reading::Reading;
 use super::report::Report;
 use super::special::Special;
 use super::spindle_announced::Announced;
@@ -271,6 +272,7 @@ impl Control<'_> {
             // The same as below, without asking for what is not there.
             self.read_feed(run);
             self.motion_word(run);
+            self.lathe_corner(run);
             self.motion(run);
             if run.report.diagnostics.errors == errors {
                 self.complain_about_rest(run);

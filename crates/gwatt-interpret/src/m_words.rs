@@ -97,6 +97,13 @@ impl Control<'_> {
             self.switch_loads(value);
             self.switches.switch(number);
             self.osp_return(number);
+            if self.moves_of_itself(b'M', number) {
+                if number == 60 {
+                    self.load_tool(number, span, run);
+                }
+                self.builder_moves(number, span, run);
+                continue;
+            }
             if self.state_word(number, span, run) {
                 continue;
             }
@@ -157,10 +164,13 @@ impl Control<'_> {
         match order {
             None if run.words.has_axes() => {
                 run.facts.fixed = Some(TOOL_CHANGE_UNKNOWN);
+                self.tool_change_moves(span, run);
                 run.act(ActionKind::ToolChangeInMotion, 6.0);
                 return;
             }
-            Some(order) if first && changes_nothing_else(order, run) => {
+            Some(order)
+                if first && !self.tool_change_moves_axes() && changes_nothing_else(order, run) =>
+            {
                 let select = run.block.words.iter().find(|word| word.letter == b'T');
                 run.facts.tool_words = Some(ToolWords {
                     select: select.map(|word| word.span),
@@ -171,8 +181,14 @@ impl Control<'_> {
             _ => {}
         }
         if order != Some(ToolChange::AfterMotion) {
+            self.tool_change_moves(span, run);
             run.act(ActionKind::ToolChange, 6.0);
         }
+    }
+
+    fn tool_change_moves_axes(&self) -> bool {
+        let moving = self.machine.controller.language.tool_change_moves;
+        moving.is_some_and(|axes| !axes.is_empty())
     }
 
     /// Whether the block changes the tool once the axes stand.
@@ -182,13 +198,15 @@ impl Control<'_> {
     }
 
     /// A tool that changes once the axes stand, or perhaps then.
-    pub(super) fn change_tool_at_end(&self, run: &mut Run<'_, '_>) {
+    pub(super) fn change_tool_at_end(&mut self, run: &mut Run<'_, '_>) {
         if self.changes_tool_at_end(run) {
             if run.facts.selects_tool {
                 run.act(ActionKind::ToolSelect, f64::from(self.tools.selected));
             }
+            self.tool_change_moves(run.whole(), run);
             run.act(ActionKind::ToolChange, 6.0);
         } else if run.steps.iter().any(is_in_motion) {
+            self.tool_change_moves(run.whole(), run);
             run.act(ActionKind::ToolChangeInMotion, 6.0);
         }
     }

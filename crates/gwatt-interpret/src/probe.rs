@@ -9,7 +9,7 @@ mod words;
 
 use std::cell::Cell;
 
-use super::position::ProbeResult;
+use super::reading::ProbeResult;
 use gwatt_machine::AxisSet;
 
 /// Shortest way to the target that is taken for a probing move, inches.

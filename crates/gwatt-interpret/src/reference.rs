@@ -67,7 +67,7 @@ impl Control<'_> {
     /// The point that G28 or G30 goes to, machine coordinates, and the axes of which it is not
     /// known how far it is: `LinuxCNC` keeps the first two among its parameters; without
     /// those, and for others, they are in the machine file.
-    fn reference_point(
+    pub(super) fn reference_point(
         &mut self,
         point: u16,
         named: AxisSet,

@@ -93,6 +93,9 @@ impl Control<'_> {
                 GCode::Polar(on) => self.polar_mode(on, span, run),
                 GCode::PathMode => self.path_mode(number, run),
                 GCode::MirrorX => self.mirror_x(span, run),
+                GCode::Ignored if self.moves_of_itself(b'G', number) => {
+                    self.builder_moves(number, span, run);
+                }
                 GCode::Ignored => self.arguments_of_ignored(number, run),
                 GCode::Retract(initial) => self.retract_level(initial, span, run),
                 GCode::Absolute(absolute) => {

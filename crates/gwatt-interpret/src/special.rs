@@ -5,7 +5,7 @@ mod words;
 
 use super::code::{GCode, Motion};
 use super::cycle::Held;
-use super::position::Reading;
+use super::reading::Reading;
 use super::spline::Spline;
 use crate::rules::{CycleWords, LanguageRules, rules_of};
 use gwatt_machine::{AxisValues, Language};

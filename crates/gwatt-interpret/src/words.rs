@@ -2,8 +2,8 @@
 
 use arrayvec::ArrayVec;
 
-use super::code::{GCode, Motion};
-use super::dialect::{Own, dialect_code};
+use super::code::{GCode, Motion, Own};
+use super::dialect::dialect_code;
 use super::g_codes::{code_number, exact_once};
 use super::letters::{AXIS_LETTERS, POLAR, SLOTS, bit, letter_of, slot};
 use super::report::Report;
@@ -188,6 +188,9 @@ impl Words {
                     .contains(&number)
                     .then_some(GCode::Ignored)
             };
+            if controller.language.unknown_moves.contains(&(b'G', number)) {
+                return Some((GCode::Ignored, number));
+            }
             let dialect = &controller.language.dialect;
             if dialect.active {
                 match dialect_code(number, dialect) {

@@ -1,6 +1,7 @@
 //! Controller profiles: what a controller reads, how it plans, and which words
 //! lower speed and acceleration. Profiles are data (TOML).
 
+use super::axis::AxisSet;
 use super::knob::Knob;
 use super::look_ahead::LookAhead;
 use super::printer::Printer;
@@ -74,6 +75,11 @@ pub struct Language {
     /// When the tool changes where M6 stands in a block that moves; `None`: not known, the
     /// builder of the machine decides.
     pub tool_change: Option<ToolChange>,
+    /// The axes that M6 sends to their reference points by itself; `None`: not known, taken as
+    /// none.
+    pub tool_change_moves: Option<AxisSet>,
+    /// Letters and numbers × 10 of words that move axes in ways that nobody describes.
+    pub unknown_moves: Vec<(u8, u16)>,
     /// Whether G0 obeys F like G1.
     pub rapid_uses_feed: bool,
     /// Further G words (number × 10, rounded) without motion that are passed over.

@@ -35,6 +35,9 @@ pub struct Printer {
     pub feed_factor_spares: AxisSet,
     /// Axes that home together, in the order of homing.
     pub home_together: Vec<AxisSet>,
+    /// Axes that each homing moves besides those that it homes, each group together, one group
+    /// after the other, at the speeds of homing; where they end is not known.
+    pub home_moves: Vec<AxisSet>,
     /// G10 and G11 until the program sets them.
     pub retract: Retract,
     /// Letters that make a G0 or G1 end at an endstop (RepRapFirmware's H).
@@ -140,6 +143,7 @@ impl Default for Printer {
             retract_by_path: false,
             feed_factor_spares: AxisSet(0),
             home_together: vec![AxisSet(0b11), AxisSet(0b100)],
+            home_moves: Vec::new(),
             retract: Retract::default(),
             endstop_letters: Vec::new(),
             ignored_macros: Vec::new(),

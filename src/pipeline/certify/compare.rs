@@ -1,10 +1,10 @@
 //! What is judged of a move by itself: whether it fits, and whether it asks for no more than
 //! the original.
 
-use super::pieces::rounding;
 use super::{BUG, Reasons};
-use crate::interpret::Move;
+use crate::interpret::{Move, MoveKind};
 use crate::pipeline::expected::ExpectedMove;
+use crate::pipeline::split::BESIDE_MM;
 use crate::power::{Assessment, PowerModel};
 
 /// The rule of moves that draw too much; what helps depends on what is permitted.
@@ -64,7 +64,45 @@ pub(super) fn compare(
         && (falls(original.speed_mm_s, after.speed_mm_s)
             || falls(original.accel_mm_s2, after.accel_mm_s2))
     {
-        let message = "the feed of a block that was not to be changed differs".to_owned();
-        reasons.push(place, "changed-feed", message, BUG, text);
+        let (message, help) = if asked.has_no_feed() {
+            (
+                "no F is in force, and the one that the control takes then is not known: feeds that \
+                 replace rapids before it leave another",
+                "write F before them",
+            )
+        } else {
+            (
+                "the feed of a block that was not to be changed differs",
+                BUG,
+            )
+        };
+        reasons.push(place, "changed-feed", message.to_owned(), help, text);
+    }
+}
+
+/// By what share the speed of a move along its path may differ from that of the original
+/// by rounding: places of pieces are rounded, and with them its direction.
+pub(super) fn rounding(original: &ExpectedMove, mv: &Move, usual: f64) -> f64 {
+    if original.split.is_none() || mv.kind == MoveKind::Dwell || mv.length_mm <= 0.0 {
+        return usual;
+    }
+    // An axis has a share of the direction that is never small against its rounding: it
+    // would not limit the speed otherwise.
+    let ways = mv
+        .moving
+        .iter()
+        .map(|axis| (mv.end[axis] - mv.start[axis]).abs());
+    let least = ways.fold(f64::INFINITY, f64::min).max(BESIDE_MM);
+    usual + (BESIDE_MM / least).min(1e-4)
+}
+
+impl ExpectedMove {
+    /// The same for a piece.
+    pub(super) fn without_row(&self) -> Self {
+        Self {
+            row: None,
+            split: None,
+            ..*self
+        }
     }
 }

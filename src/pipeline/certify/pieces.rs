@@ -1,28 +1,10 @@
 //! Lines that the written program runs in pieces: together they are one move.
 
+use super::divided::Found;
 use super::{Expected, Verdict};
-use crate::interpret::{Move, MoveKind};
+use crate::interpret::Move;
 use crate::pipeline::expected::{ExpectedMove, different};
-use crate::pipeline::split::BESIDE_MM;
 use crate::power::Assessment;
-
-/// Pieces of a line so far.
-#[derive(Debug, Default)]
-pub(super) struct Pieces {
-    /// That the written program has run.
-    done: usize,
-    /// That are judged, and what is known of them together.
-    judged: usize,
-    sum: Option<Assessment>,
-}
-
-/// What a piece is found to be.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Found {
-    Right,
-    /// With what differs.
-    Wrong(&'static str),
-}
 
 impl Verdict<'_, '_> {
     /// What a move is as a piece of the line that the original runs here, if it runs one
@@ -73,32 +55,5 @@ impl Verdict<'_, '_> {
         }
         self.pieces.judged = 0;
         Some(sum)
-    }
-}
-
-/// By what share the speed of a move along its path may differ from that of the original
-/// by rounding: places of pieces are rounded, and with them its direction.
-pub(super) fn rounding(original: &ExpectedMove, mv: &Move, usual: f64) -> f64 {
-    if original.split.is_none() || mv.kind == MoveKind::Dwell || mv.length_mm <= 0.0 {
-        return usual;
-    }
-    // An axis has a share of the direction that is never small against its rounding: it
-    // would not limit the speed otherwise.
-    let ways = mv
-        .moving
-        .iter()
-        .map(|axis| (mv.end[axis] - mv.start[axis]).abs());
-    let least = ways.fold(f64::INFINITY, f64::min).max(BESIDE_MM);
-    usual + (BESIDE_MM / least).min(1e-4)
-}
-
-impl ExpectedMove {
-    /// The same for a piece.
-    fn without_row(&self) -> Self {
-        Self {
-            row: None,
-            split: None,
-            ..*self
-        }
     }
 }

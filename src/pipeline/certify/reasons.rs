@@ -104,3 +104,5 @@ impl Reasons {
         }
     }
 }
+
+pub(super) const BUG: &str = "nothing was written; this is a fault of gwatt, please report it";

@@ -10,6 +10,7 @@ mod called;
 mod compare;
 mod kept;
 mod returns;
+mod series;
 mod trace;
 mod turning;
 
@@ -17,6 +18,7 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 
 use kept::Notes;
+use series::{Lines, Series, add};
 
 use super::executor::{Executor, Line};
 use super::{Failure, LimitSummary, Options, Summary};
@@ -64,37 +66,6 @@ pub(super) enum Way {
     Placed,
     /// All moves do.
     WrittenOut,
-}
-
-/// What the lines of one series of cycle blocks become, or why they stay, with the line.
-type Lines = Result<BTreeMap<u64, Vec<u8>>, (u64, &'static str)>;
-
-/// One series of cycle blocks, from the one that begins the cycle to the one that ends it;
-/// or one block that returns to the reference point.
-struct Series {
-    /// What is said where it stays as it is.
-    stays: &'static str,
-    /// Its lines, with their N words.
-    numbers: BTreeMap<u64, Option<f64>>,
-    written_out: Lines,
-    placed: Lines,
-    /// Its first block with the level to return to, which an earlier block may have set.
-    level: Option<(u64, Vec<u8>)>,
-    /// The words that hold until the cycle ends, by letter.
-    held: BTreeMap<u8, Vec<u8>>,
-}
-
-impl Default for Series {
-    fn default() -> Self {
-        Self {
-            stays: "the canned cycle is not written out",
-            numbers: BTreeMap::new(),
-            written_out: Ok(BTreeMap::new()),
-            placed: Ok(BTreeMap::new()),
-            level: None,
-            held: BTreeMap::new(),
-        }
-    }
 }
 
 /// Whether blocks that may not be changed, as those of canned cycles and returns to the
@@ -378,49 +349,6 @@ const WITHOUT_POINT: &str = "numbers of the program have no decimal point, and w
      not known: say decimal_point under [language] of the machine file";
 /// Words that hold until a cycle ends.
 const HELD: &[u8] = b"ZRQPIJ";
-/// Why a line that runs several times stays as it is.
-const EACH_TIME: &str = "it does something else each time it runs";
-
-impl Series {
-    fn refuse(&mut self, line: u64, why: &'static str) {
-        self.numbers.entry(line).or_default();
-        self.written_out = Err((line, why));
-        self.placed = Err((line, why));
-    }
-
-    /// Takes over another one that shares lines with it.
-    fn join(&mut self, other: Self) {
-        self.numbers.extend(other.numbers);
-        for (own, other) in [
-            (&mut self.written_out, other.written_out),
-            (&mut self.placed, other.placed),
-        ] {
-            match other {
-                Ok(lines) => {
-                    for (number, bytes) in lines {
-                        add(own, number, Ok(bytes));
-                    }
-                }
-                Err(why) => *own = Err(why),
-            }
-        }
-    }
-}
-
-/// Takes what a line becomes, which is the same in all its runs.
-fn add(lines: &mut Lines, number: u64, bytes: Result<Vec<u8>, &'static str>) {
-    let Ok(known) = lines else { return };
-    match bytes {
-        Ok(bytes) => {
-            if known.get(&number).is_some_and(|before| *before != bytes) {
-                *lines = Err((number, EACH_TIME));
-            } else {
-                known.insert(number, bytes);
-            }
-        }
-        Err(why) => *lines = Err((number, why)),
-    }
-}
 
 /// The series that is open has ended.
 fn close(open: &mut Option<Series>, all: &mut Vec<Series>) {

@@ -1,5 +1,6 @@
 //! Dwells between rapids and before tool changes, where limits over time ask for them.
 
+use super::waits::Plan;
 use std::io::{Read, Seek, Write};
 
 use super::Writer;
@@ -12,36 +13,6 @@ use crate::pipeline::row::{Certificate, Row};
 
 /// Places that are kept.
 const PLACES: usize = 1 << 16;
-
-/// How long a program waits, and where.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::pipeline) struct Plan {
-    /// At each place, s; 0: it does not.
-    pub(in crate::pipeline) each_s: f64,
-    /// Only before this line; `None`: at all places.
-    pub(in crate::pipeline) place: Option<u64>,
-}
-
-impl Plan {
-    /// Nowhere.
-    pub(in crate::pipeline) const NEVER: Self = Self {
-        each_s: 0.0,
-        place: None,
-    };
-}
-
-/// What is known of places to wait at.
-#[derive(Debug, Default)]
-pub(super) struct Waits {
-    /// `None`: waiting is not permitted.
-    pub(super) plan: Option<Plan>,
-    /// Lines before which it may wait, so far.
-    pub(super) places: Vec<u64>,
-    /// Where it waits.
-    pub(super) pauses: Vec<Pause>,
-    /// The rapid that the block before ended with, where nothing came after it.
-    last: Option<Move>,
-}
 
 impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
     /// Lets the program wait as planned.

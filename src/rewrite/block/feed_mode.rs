@@ -3,21 +3,31 @@
 use std::fmt::Write as _;
 
 use super::{BlockView, Rewriter};
+use crate::edit::Edit;
 use crate::interpret::FeedMode;
 use crate::rewrite::number::feed_again;
 use crate::rewrite::state::{Mark, Written};
+use crate::syntax::Word;
 
 impl Rewriter<'_> {
-    /// A line that lets F be by the minute, where it is not for others. True where it is needed.
+    /// Lets F be by the minute, where it is not for others: by a line, or in place of the word
+    /// of the block that says otherwise. True where it is needed.
     pub(super) fn begin_apart(&mut self, view: &BlockView<'_>, out: &mut Vec<u8>) -> bool {
         let apart = apart(view) && !view.facts.compensated;
-        if apart {
-            self.restore(view.before, view.knobs, out);
-            let [per_minute, _] = view.after.per_minute_and_back();
-            self.insert_line(&g_word(per_minute), out);
-            self.written.feed = None;
+        if !apart {
+            return false;
         }
-        apart
+        let [per_minute, back] = view.after.per_minute_and_back();
+        let mut words = view.block.words.iter();
+        if let Some(word) = words.find(|word| says_feed_mode(word, back)) {
+            self.edits
+                .push(Edit::replace(word.span, g_word(per_minute)));
+        } else {
+            self.restore(view.before, view.knobs, out);
+            self.insert_line(&g_word(per_minute), out);
+        }
+        self.written.feed = None;
+        true
     }
 
     /// A line that puts back what was in force, after a feed per minute among others.
@@ -53,4 +63,14 @@ pub(super) fn apart(view: &BlockView<'_>) -> bool {
 /// A G word by its number, times ten.
 pub(super) fn g_word(number: u16) -> String {
     format!("G{}", f64::from(number) / 10.0)
+}
+
+/// Whether a word says what F means, where this word, times ten, would say it too.
+pub(super) fn says_feed_mode(word: &Word, back: u16) -> bool {
+    let number = (word.value * 10.0).round();
+    let same_group = match back {
+        980 | 990 => (980.0..=990.0).contains(&number),
+        _ => (930.0..=970.0).contains(&number) || (9300.0..=9790.0).contains(&number),
+    };
+    word.letter == b'G' && same_group
 }

@@ -4,19 +4,9 @@ use std::fmt::Write as _;
 
 use super::{BlockView, Rewriter};
 use crate::limit::Change;
-use crate::machine::AxisValues;
 use crate::rewrite::number::{decimal, feed_again, has_point};
 use crate::rewrite::state::FeedValue;
 use crate::rewrite::turned::{Acted, InForce};
-
-/// A piece that stands on a line of its own before the block.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PieceWords {
-    /// The words of its end, such as `X12.5 Y3`.
-    pub place: String,
-    /// The knob for acceleration, and its value for each axis; `None`: what is in force.
-    pub accel: Option<(usize, AxisValues)>,
-}
 
 impl Rewriter<'_> {
     /// Writes the pieces before the block, each with its acceleration; motion word and F

@@ -1,8 +1,8 @@
 //! What the rewriter must know of a block, and of what stands around it.
 
-use super::pieces::PieceWords;
 use crate::interpret::{Facts, KnobState};
 use crate::limit::Change;
+use crate::machine::AxisValues;
 use crate::rewrite::state::Mark;
 use crate::syntax::Block;
 
@@ -70,4 +70,13 @@ impl FeedAround {
             }
         )
     }
+}
+
+/// A piece that stands on a line of its own before the block.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PieceWords {
+    /// The words of its end, such as `X12.5 Y3`.
+    pub place: String,
+    /// The knob for acceleration, and its value for each axis; `None`: what is in force.
+    pub accel: Option<(usize, AxisValues)>,
 }

@@ -1,13 +1,12 @@
 //! Blocks under compensation: the control looks from each to the next, so that no line comes
 //! between them. What a block needs, and what is put back after another, stands in it.
 
-use super::feed_mode::{apart, g_word};
+use super::feed_mode::{apart, g_word, says_feed_mode};
 use super::{BlockView, Rewriter, first_word};
 use crate::edit::Edit;
 use crate::interpret::{FeedMode, Motion};
 use crate::rewrite::number::{Style, feed_again};
 use crate::rewrite::state::{Mark, Written, motion_word};
-use crate::syntax::Word;
 
 impl Rewriter<'_> {
     /// Writes a block that follows another one under compensation. False where it cannot take
@@ -166,14 +165,4 @@ impl Rewriter<'_> {
 fn takes_no_words(view: &BlockView<'_>) -> bool {
     let facts = view.facts;
     facts.checksum || facts.dwell_takes_feed || view.block.tape || view.block.delete_level > 0
-}
-
-/// Whether a word says what F means, where this word, times ten, would say it too.
-fn says_feed_mode(word: &Word, back: u16) -> bool {
-    let number = (word.value * 10.0).round();
-    let same_group = match back {
-        980 | 990 => (980.0..=990.0).contains(&number),
-        _ => (930.0..=970.0).contains(&number) || (9300.0..=9790.0).contains(&number),
-    };
-    word.letter == b'G' && same_group
 }

@@ -8,11 +8,13 @@
 mod align;
 mod axes;
 mod curve;
+mod meter;
 mod peaks;
 mod trace;
 
 pub use axes::{AxisCurve, AxisFactor};
 pub use curve::Curve;
+use meter::{SLACK, shown, times_looked_at};
 pub use peaks::BlockPeaks;
 pub use trace::{AxisTrace, PowerTrace};
 
@@ -30,8 +32,6 @@ const AVERAGED: [f64; 10] = [1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 35.0, 60.
 const WORTH: f64 = 0.1;
 /// What stands for an instantaneous sample, as a share of the time between two.
 const INSTANT: f64 = 1e-3;
-/// Samples by which measured and predicted power may differ in time.
-const SLACK: f64 = 2.0;
 /// Shifts that are tried with each, in samples.
 const SHIFTS: [f64; 8] = [-1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0];
 
@@ -193,19 +193,6 @@ pub fn overlay(curve: &Curve, axes: &[AxisCurve], log: &PowerTrace) -> Outcome<O
     })
 }
 
-/// The prediction as a meter shows it that averages over `width_s`: at each time the mean up to
-/// it.
-fn shown(curve: &Curve, times_s: &[f64], place: Place, width_s: f64) -> Vec<f64> {
-    let pace = place.pace(curve);
-    let (mut from, mut to) = (curve.reader(), curve.reader());
-    let at = |t: f64| (t - place.start_s) / pace;
-    let means = times_s.iter().map(|t| {
-        let energy_j = to.energy_j(at(*t)) - from.energy_j(at(t - width_s));
-        energy_j * pace / width_s
-    });
-    means.collect()
-}
-
 /// For how long the meter averages, with the place that goes with it: what it shows comes half
 /// of that late, which the place was found without.
 fn averaged(curve: &Curve, log: &PowerTrace, place: Place) -> (Place, f64) {
@@ -256,15 +243,6 @@ fn largest_near(curve: &Curve, log: &PowerTrace, place: Place, width_s: f64) -> 
     let looked_at_s = times_looked_at(curve, log, place);
     let shown = shown(curve, &looked_at_s, place, width_s);
     peaks::largest_near(&log.time_s, (&looked_at_s, &shown), slack_s)
-}
-
-/// The times of samples, and those at which pieces of the curve end, in order.
-fn times_looked_at(curve: &Curve, log: &PowerTrace, place: Place) -> Vec<f64> {
-    let pace = place.pace(curve);
-    let ends = curve.times_s().iter().map(|t| place.start_s + t * pace);
-    let mut looked_at_s: Vec<f64> = ends.chain(log.time_s.iter().copied()).collect();
-    looked_at_s.sort_by(f64::total_cmp);
-    looked_at_s
 }
 
 fn correlation(a: &[f64], b: &[f64]) -> f64 {

@@ -1,5 +1,6 @@
 //! Commands that stand in the configuration: macros, and what runs at the start.
 
+use super::bodies::{self, Effect};
 use crate::found::{Figure, Found, highest};
 use crate::ini::Item;
 use crate::near::Job;
@@ -64,40 +65,80 @@ fn limits(found: &mut AtStart, log: &mut Log, place: &Place<'_>, code: &str) {
     }
 }
 
-/// Programs call macros, whose commands stand in the configuration.
-pub(super) fn named(items: &[Item<'_>], found: &mut Found) {
-    let list = |kind: &str| {
-        let mut names: Vec<String> = Vec::new();
-        for item in items {
-            if let Some(name) = item.section.strip_prefix(kind) {
-                let name = name.trim().to_ascii_uppercase();
-                if usable(&name) && !names.contains(&name) {
-                    names.push(name);
-                }
+/// Macros by what they do at most.
+#[derive(Default)]
+struct Lists {
+    anything: Vec<String>,
+    moves: Vec<String>,
+    nothing: Vec<String>,
+    /// Words that do what the firmware's do.
+    plain: Vec<String>,
+    /// The profile says that they do not park.
+    timelapse: bool,
+    /// The list in which G28 stands, which `[homing_override]` replaces.
+    homing: &'static str,
+}
+
+impl Lists {
+    fn add(&mut self, name: &str, effect: Effect) {
+        let own = bodies::switched_by(name);
+        if name.trim_start_matches('_').starts_with("TIMELAPSE_") {
+            self.timelapse |= effect.moves;
+            return;
+        }
+        let list = if effect.anything || effect.switches & !own != 0 {
+            &mut self.anything
+        } else if effect.moves && !(own != 0 && bodies::waits(name)) {
+            &mut self.moves
+        } else if own != 0 {
+            &mut self.plain
+        } else {
+            &mut self.nothing
+        };
+        list.push(name.to_owned());
+    }
+}
+
+/// Programs call macros, whose commands stand in the configuration: those in place of words too.
+pub(super) fn named(job: &Job, items: &[Item<'_>], found: &mut Found, log: &mut Log) {
+    let mut lists = Lists::default();
+    let bodies = bodies::read(job);
+    for body in bodies.iter().filter(|body| usable(&body.name)) {
+        lists.add(&body.name, body.effect);
+    }
+    let homing = bodies.iter().find(|body| body.name.is_empty());
+    if let Some(homing) = homing.filter(|_| bodies.iter().all(|body| body.name != "G28")) {
+        let effect = Effect {
+            moves: true,
+            ..homing.effect
+        };
+        lists.add("G28", effect);
+        let (list, what) = if lists.moves.last().is_some_and(|name| name == "G28") {
+            ("unknown_moves", "and leaves feed and modes as they are")
+        } else {
+            (
+                "unknown_macros",
+                "and may leave another feed and other modes",
+            )
+        };
+        lists.homing = list;
+        let message = format!(
+            "commands in place of G28: it counts with every axis at its full speed, {what}"
+        );
+        let help = format!("G28 stands in `{list}` under [language]");
+        log.warning(&homing.place, message, &help);
+    }
+    write(&lists, found);
+    let mut delayed: Vec<String> = Vec::new();
+    for item in items {
+        if let Some(name) = item.section.strip_prefix("delayed_gcode ") {
+            let name = name.trim().to_ascii_uppercase();
+            if usable(&name) && !delayed.contains(&name) {
+                delayed.push(name);
             }
         }
-        names
-    };
-    let (words, macros): (Vec<_>, Vec<_>) = list("gcode_macro ")
-        .into_iter()
-        .partition(|name| is_word(name));
-    if !macros.is_empty() {
-        found.language(array("unknown_macros", &macros), "[gcode_macro]");
-        found.remarks.push(
-            "What macros do: a program may call them, and they count as anything. A file NAME.gcode \
-             with the commands that one comes to, in the program's folder or one given by --sub-path, \
-             says it; what moves nothing and sets nothing goes into `ignored_macros`, what leaves feed \
-             and modes as they are into `unknown_moves`"
-                .to_owned(),
-        );
     }
-    if !words.is_empty() {
-        found.remarks.push(format!(
-            "Macros in place of words ({}): these count as the firmware's own",
-            words.join(", ")
-        ));
-    }
-    let delayed = list("delayed_gcode ").join(", ");
+    let delayed = delayed.join(", ");
     if !delayed.is_empty() {
         found.remarks.push(format!(
             "Commands that run by themselves ([delayed_gcode] {delayed}): limits of speed and \
@@ -106,16 +147,65 @@ pub(super) fn named(items: &[Item<'_>], found: &mut Found) {
     }
 }
 
-/// Whether it is a name by which a program can call a macro.
-fn usable(name: &str) -> bool {
-    let plain = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
-    !name.is_empty() && name.len() <= 60 && name.bytes().all(plain)
+fn write(lists: &Lists, found: &mut Found) {
+    let fields = [
+        ("unknown_macros", &lists.anything, "[gcode_macro]"),
+        (
+            "unknown_moves",
+            &lists.moves,
+            "[gcode_macro] that leave feed and modes as they are",
+        ),
+        (
+            "ignored_macros",
+            &lists.nothing,
+            "[gcode_macro] that move nothing and set nothing",
+        ),
+    ];
+    for (field, names, source) in fields {
+        let source = match (field == lists.homing, names.len()) {
+            (_, 0) => continue,
+            (true, 1) => "[homing_override]".to_owned(),
+            (true, _) => format!("{source}, [homing_override]"),
+            (false, _) => source.to_owned(),
+        };
+        found.language(array(field, names), source);
+    }
+    if !lists.anything.is_empty() {
+        found.remarks.push(
+            "What macros do: a program may call them, and they count as anything. A file NAME.gcode \
+             with the commands that one comes to, in the program's folder or one given by --sub-path, \
+             says it; what moves nothing and sets nothing goes into `ignored_macros`, what leaves feed \
+             and modes as they are into `unknown_moves`"
+                .to_owned(),
+        );
+    }
+    if !lists.plain.is_empty() {
+        found.remarks.push(format!(
+            "Macros in place of words that switch the same heaters and fans ({}): these count as the \
+             firmware's own",
+            lists.plain.join(", ")
+        ));
+    }
+    if lists.timelapse {
+        found.remarks.push(
+            "Macros of timelapse: they count as moving nothing, as they come. Where parking is on, \
+             list TIMELAPSE_TAKE_FRAME in `unknown_macros`"
+                .to_owned(),
+        );
+    }
 }
 
-/// Whether it is written as a word: `G28`, `M109`, `T0`.
-fn is_word(name: &str) -> bool {
+/// Whether it is a name by which a program can call a macro: of words with a point too, such as
+/// `M73.1`.
+fn usable(name: &str) -> bool {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
     let digits = name.strip_prefix(['G', 'M', 'T']).unwrap_or("");
-    digits.starts_with(|first: char| first.is_ascii_digit())
+    let (whole, part) = digits.split_once('.').unwrap_or((digits, "0"));
+    let number = |digits: &str| {
+        (1..=4).contains(&digits.len()) && digits.bytes().all(|byte| byte.is_ascii_digit())
+    };
+    let word = number(whole) && number(part);
+    word || !name.is_empty() && name.len() <= 60 && name.bytes().all(plain)
 }
 
 /// An array of names, on lines of its own where it is long.

@@ -1,5 +1,6 @@
 //! HAL files: what they set for step generators and encoders.
 
+use super::kinematics_module::by_name;
 use crate::found::Found;
 use crate::text::{File, Log, Text};
 
@@ -80,7 +81,7 @@ impl Module {
         let whole = place.line();
         let start = whole.find(&self.name).unwrap_or(0);
         let name = whole.get(start..start + self.name.len()).unwrap_or(whole);
-        super::by_name(&self.name, whole.trim(), &place.of(name), found, log);
+        by_name(&self.name, whole.trim(), &place.of(name), found, log);
     }
 }
 

@@ -18,7 +18,7 @@ pub(crate) const RULES: Rules = Rules {
         if value.fract() == 0.0 && (0.0..=BITS_MAX).contains(&value) {
             Ok(value as i64)
         } else {
-            Err("a logical operation on what is no whole number of 32 bits")
+            Err("a logical operation on a value that is not a whole number of 32 bits")
         }
     },
 };

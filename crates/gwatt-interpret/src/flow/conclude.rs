@@ -40,12 +40,10 @@ impl Flow {
             stuck |= effects.diagnostics.errors > 0;
             transfer = None;
         }
-        let moves = effects
-            .steps
-            .iter()
-            .filter(|step| matches!(step, Step::Move(_)));
+        // A dwell moves nothing: a loop that waits for what never comes has no other steps.
+        let moves = effects.steps.iter().filter(|step| step.moves_axes());
         if done.is_ok() {
-            done = self.end_line(run, moves.clone().count());
+            done = self.end_line(run, moves.count());
         }
         if done.is_ok()
             && let Some(transfer) = transfer
@@ -70,7 +68,8 @@ impl Flow {
                     "{} lines in a row have been executed without a move",
                     self.limits.idle_lines
                 );
-                let help = "look for a loop that does not end; --max-idle-lines sets this limit";
+                let help = "look for a loop that does not end, or that waits for what something else \
+                    writes; --max-idle-lines sets this limit";
                 return Err(self.trouble(FlowError::new("endless", message, help)));
             }
             return Ok(());

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use super::error::FlowError;
 use crate::label::Label;
-use crate::position::Reading;
+use crate::reading::Reading;
 use crate::shelf::Shelf;
 
 /// Bytes that all files of subprograms may have together.

@@ -7,7 +7,7 @@ pub struct Limits {
     pub depth: usize,
     /// Moves of lines that have been executed before.
     pub repeated_moves: u64,
-    /// Lines in a row that move nothing.
+    /// Lines in a row that move no axis.
     pub idle_lines: u64,
 }
 
@@ -16,7 +16,7 @@ impl Default for Limits {
         Self {
             depth: 100,
             repeated_moves: 10_000_000,
-            idle_lines: 10_000_000,
+            idle_lines: 1_000_000,
         }
     }
 }

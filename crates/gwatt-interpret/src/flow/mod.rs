@@ -29,7 +29,7 @@ use super::execute::Interpreter;
 use super::jump::{Call, Target, Transfer};
 use super::label::Label;
 use super::parameters::{LOCALS, Scope};
-use super::position::Reading;
+use super::reading::Reading;
 use super::statement::keyword::Keyword;
 use gwatt_syntax::Block;
 use gwatt_syntax::diagnostic::Diagnostic;

@@ -64,7 +64,7 @@ const COMMANDS: [(&str, Kind); 40] = [
     ("PTP", Kind::Refused("a move from point to point")),
 ];
 
-const SMOOTHS: &str = "#SLOPE, #CONTOUR MODE, #HSC, #OVERRIDE and their kin change speed within \
+const SMOOTHS: &str = "#SLOPE, #CONTOUR MODE, #HSC, #OVERRIDE and similar words change speed within \
                        the limits of the axes: taken as not there";
 
 /// "Adapt path dynamic limit values (#VECTOR LIMIT ON/OFF)", "P-CHAN-00351", "P-CHAN-00350".

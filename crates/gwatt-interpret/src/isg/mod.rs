@@ -12,6 +12,7 @@ mod flow_words;
 mod ramp;
 mod rotation;
 mod system;
+mod systems;
 mod terms;
 mod variable;
 mod word;
@@ -43,7 +44,7 @@ pub(super) struct Isg {
     /// End and step of loops that count, by text, line and level.
     counts: HashMap<(u16, u64, usize), (f64, f64)>,
     /// #CS.
-    systems: system::Systems,
+    systems: systems::Systems,
     /// Between `%L` and the main program.
     begun: bool,
 }
@@ -74,7 +75,7 @@ impl Isg {
     pub(super) fn is_beyond_words(&self, block: &Block) -> bool {
         let special = |letter: u8, value: f64| match letter {
             b'L' | b'P' | b'=' | b'@' => true,
-            b'G' => value == 4.0 || ramp::is_ramp(value),
+            b'G' => value == 4.0 || is_ramp(value),
             b'M' => [2.0, 17.0, 29.0, 30.0].contains(&value),
             _ => false,
         };
@@ -104,4 +105,9 @@ impl Isg {
     fn is_called(&self) -> bool {
         self.levels.len() > 1
     }
+}
+
+/// Whether a G word weights ramp times: see [`ramp`].
+fn is_ramp(number: f64) -> bool {
+    [132.0, 133.0, 134.0, 233.0].contains(&number)
 }

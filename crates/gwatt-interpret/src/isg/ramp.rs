@@ -9,11 +9,6 @@ use gwatt_syntax::Block;
 const NOTE: &str = "G132, G133, G134 and G233 lengthen the ramps of acceleration: \
                     taken as not there, which counts higher";
 
-/// Whether a G word is one of them.
-pub(super) fn is_ramp(number: f64) -> bool {
-    [132.0, 133.0, 134.0, 233.0].contains(&number)
-}
-
 impl Reading<'_, '_, '_> {
     /// `G132 X200 Y150`, `G133 = 200`; the G word has been taken.
     pub(super) fn ramp_times(&mut self, start: usize, block: &Block) -> Outcome<()> {

@@ -8,26 +8,6 @@ use crate::frame::Affine;
 /// Coordinate systems that can be stored at the same time.
 const STORED_MAX: usize = 5;
 
-/// The coordinate systems of a program.
-#[derive(Debug, Default)]
-pub(super) struct Systems {
-    /// What is stored, by its number; without one, by the next that is free.
-    stored: Vec<(u32, Affine)>,
-    /// Those in force, each with what it stands in.
-    active: Vec<Affine>,
-}
-
-impl Systems {
-    pub(super) fn in_force(&self) -> Option<Affine> {
-        self.active.last().copied()
-    }
-
-    fn activate(&mut self, map: Affine) {
-        let map = self.active.last().map_or(map, |outer| map.then(outer));
-        self.active.push(map);
-    }
-}
-
 /// What stands in brackets after a command.
 enum Given {
     Nothing,

@@ -127,7 +127,7 @@ impl Reading<'_, '_, '_> {
             self.cursor.peek();
             let number = self.cursor.at;
             let value = self.plain_or_expression()?;
-            if letter == b'G' && super::ramp::is_ramp(value) {
+            if letter == b'G' && super::is_ramp(value) {
                 return self.ramp_times(start, block);
             }
             self.dwells |= letter == b'G' && value == 4.0;

@@ -3,8 +3,7 @@
 mod words;
 
 use super::code::OspCode;
-use crate::code::GCode;
-use crate::dialect::Own;
+use crate::code::{GCode, Own};
 use crate::tools::ToolLength;
 
 /// The G word with this number × 10, of a machining centre or a lathe.

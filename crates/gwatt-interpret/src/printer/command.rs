@@ -85,6 +85,10 @@ impl Control<'_> {
         // Bambu Lab's M1006 plays notes, with M among their letters.
         let sounds = (letter, number) == (b'M', 10060) && self.passes(letter, number);
         if sounds || Text::is_text(letter, number) {
+            if self.unknown_word(letter, number) {
+                self.code(run, (letter, number, span), &Parameters::new());
+                return None;
+            }
             text_command(run, number);
             return None;
         }
@@ -151,6 +155,17 @@ impl Control<'_> {
         ignored || unknown || listed(&printer.shifts) || listed(&printer.optional_part)
     }
 
+    /// Whether it moves in a way that only the machine knows, as one of its macros: that counts
+    /// before what the firmware makes of the word.
+    pub(super) fn unknown_word(&self, letter: u8, number: u16) -> bool {
+        let printer = &self.machine.controller.language.printer;
+        let lists = [&printer.unknown_moves, &printer.unknown_macros];
+        lists
+            .into_iter()
+            .flatten()
+            .any(|one| one.is_code(letter, number))
+    }
+
     /// Whether the profile says that a word moves nothing. `M862.3` is one of
     /// `M862`.
     fn passes(&self, letter: u8, number: u16) -> bool {
@@ -190,15 +205,20 @@ impl Control<'_> {
         }
         let printer = &self.machine.controller.language.printer;
         let listed = |list: &[Command]| list.iter().any(|one| one.is_code(letter, number));
-        let shifts = listed(&printer.shifts);
-        if self.passes(letter, number) || listed(&printer.ignored_macros) {
+        let unknown = self.unknown_word(letter, number);
+        let shifts = listed(&printer.shifts) && !unknown;
+        if unknown && letter == b'T' {
+            self.printer.several_tools |= number > 0;
+            // The next T changes the tool, whichever it names.
+            self.printer.tool = u32::MAX;
+        }
+        if !unknown && (self.passes(letter, number) || listed(&printer.ignored_macros)) {
             note_uncounted(run, letter, number, span);
             run.act(ActionKind::Other, action);
         } else if shifts {
             self.shift_axes(parameters);
             run.act(ActionKind::Other, action);
         } else if listed(&printer.unknown_moves) {
-            self.printer.several_tools |= letter == b'T' && number > 0;
             if listed(&printer.may_heat) {
                 self.may_heat(run, span);
             }
@@ -207,8 +227,13 @@ impl Control<'_> {
                 // Whether it stays in force, firmwares see differently.
                 self.modal.feed = None;
             }
-        } else if listed(&printer.unknown_macros) {
-            self.unknown_macro(run, span);
+        } else if unknown {
+            let name = span.of(run.report.text);
+            if self.has_file(name) {
+                self.macro_file(run, name, span);
+            } else {
+                self.unknown_macro(run, span);
+            }
         } else if printer
             .optional_part
             .first()

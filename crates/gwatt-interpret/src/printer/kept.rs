@@ -1,24 +1,16 @@
 //! Positions and states that a program keeps and comes back to.
 
 use super::line::{Parameters, has, value};
-use super::unstated::Unstated;
+use super::state::{SavedPosition, SavedState};
 use crate::control::{Control, Run};
-use crate::modal::Feed;
 use crate::places::EXTRUDER;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
-use gwatt_machine::{ALL_AXES, AxisSet, AxisValues};
+use gwatt_machine::{ALL_AXES, AxisSet};
 use gwatt_motion::ActionKind;
 use gwatt_syntax::source::Span;
 
 /// Most positions and states that a program may keep.
 const KEPT: usize = 64;
-
-/// A position that G60 keeps.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct SavedPosition {
-    at: AxisValues,
-    unknown: AxisSet,
-}
 
 /// Whether a state takes the axes back to its position.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,19 +20,6 @@ pub(super) enum Back {
     AtFeed,
     /// At this speed, mm/s.
     At(f64),
-}
-
-/// What `SAVE_GCODE_STATE` keeps.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct SavedState {
-    position: SavedPosition,
-    offsets: AxisValues,
-    absolute: bool,
-    extruder_absolute: bool,
-    unstated: Unstated,
-    feed: Option<Feed>,
-    feed_factor: f64,
-    flow: f64,
 }
 
 impl Control<'_> {

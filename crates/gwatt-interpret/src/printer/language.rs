@@ -11,8 +11,8 @@ use gwatt_syntax::Block;
 pub(crate) struct PrinterLanguage;
 
 impl Language for PrinterLanguage {
-    fn is_command(&self, _control: &Control<'_>, block: &Block, _text: &[u8]) -> bool {
-        is_command(block)
+    fn is_command(&self, control: &Control<'_>, block: &Block, _text: &[u8]) -> bool {
+        is_command(block, control.printer.own_motion)
     }
 
     fn command(&self, control: &mut Control<'_>, run: &mut Run<'_, '_>) {

@@ -32,11 +32,18 @@ impl Control<'_> {
     ) {
         let printer = &self.machine.controller.language.printer;
         let listed = |list: &[Command]| list.iter().any(|one| one.is_macro(name));
+        let whole = |list: &[Command]| {
+            let mut names = list.iter().filter(|one| matches!(one, Command::Macro(_)));
+            names.any(|one| one.is_macro(name))
+        };
+        // A name says more than the beginning of one.
+        let unknown = whole(&printer.unknown_moves) || whole(&printer.unknown_macros);
+        let unknown = unknown && !whole(&printer.ignored_macros);
         let upper = name.to_ascii_uppercase();
         let upper = upper.as_slice();
         let shifts = listed(&printer.shifts);
         let moves = shifts && text.argument(at, "MOVE").is_some_and(|value| value != b"0");
-        if listed(&printer.ignored_macros) {
+        if listed(&printer.ignored_macros) && !unknown {
             match upper {
                 b"SET_PRESSURE_ADVANCE" => note_advance(run, span),
                 b"BED_MESH_PROFILE" => {
@@ -73,7 +80,7 @@ impl Control<'_> {
     }
 
     /// A name that the profile does not know: what its file says, if there is one.
-    fn macro_file(&mut self, run: &mut Run<'_, '_>, name: &[u8], span: Span) {
+    pub(super) fn macro_file(&mut self, run: &mut Run<'_, '_>, name: &[u8], span: Span) {
         if self.has_file(name) {
             let name = String::from_utf8_lossy(name).to_ascii_uppercase();
             self.transfer = Some(Transfer::Macro(name));
@@ -84,7 +91,7 @@ impl Control<'_> {
     }
 
     /// Whether a file says what the macro of this name does.
-    fn has_file(&self, name: &[u8]) -> bool {
+    pub(super) fn has_file(&self, name: &[u8]) -> bool {
         let plain = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
         let files = library::macro_files(&String::from_utf8_lossy(name).to_ascii_uppercase());
         name.iter().all(plain)

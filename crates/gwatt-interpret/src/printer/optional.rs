@@ -1,55 +1,15 @@
 //! Parts of a program that the machine may leave out, as a condition of its own decides:
 //! Bambu Lab's M622 to M623.
 
-use super::State;
-use super::unstated::Unstated;
+use super::state::Before;
+use super::state::Unstated;
 use crate::code::Motion;
 use crate::control::{Control, Run};
-use crate::knob::KnobState;
-use crate::modal::{Feed, Modal};
 use gwatt_motion::ActionKind;
 use gwatt_syntax::source::Span;
 
 /// Parts within parts.
 const DEPTH_MAX: usize = 16;
-
-/// What holds after a part that is left out.
-#[derive(Debug, Clone)]
-pub(super) struct Before {
-    absolute: bool,
-    extruder_absolute: bool,
-    feed: Option<Feed>,
-    motion: Motion,
-    mm_per_unit: f64,
-    feed_factor: f64,
-    flow: f64,
-    unstated: Unstated,
-    tool: u32,
-    lit: [u32; 32],
-    maybe_lit: u32,
-    loads: u32,
-    knobs: KnobState,
-}
-
-impl Before {
-    fn new(state: &State, modal: &Modal, knobs: &KnobState, loads: u32) -> Self {
-        Self {
-            absolute: modal.absolute,
-            extruder_absolute: state.extruder_absolute,
-            feed: modal.feed,
-            motion: modal.motion,
-            mm_per_unit: modal.mm_per_unit,
-            feed_factor: state.feed_factor,
-            flow: state.flow,
-            unstated: state.unstated,
-            tool: state.tool,
-            lit: state.lit,
-            maybe_lit: state.maybe_lit,
-            loads,
-            knobs: knobs.clone(),
-        }
-    }
-}
 
 impl Control<'_> {
     /// The part begins.
@@ -67,7 +27,7 @@ impl Control<'_> {
         run.report.note_once("optional-part", message, span);
         let before = Before::new(&self.printer, &self.modal, &self.knobs, self.loads);
         self.printer.optional.push(before);
-        self.all_at_full_speed(run);
+        self.at_full_speed(run, self.machine.axis_set);
         run.act(ActionKind::Other, 0.0);
     }
 
@@ -116,7 +76,7 @@ impl Control<'_> {
             state.tool = u32::MAX;
         }
         self.limits_at_least(&before.knobs);
-        self.all_at_full_speed(run);
+        self.at_full_speed(run, self.machine.axis_set);
         run.act(ActionKind::Other, 0.0);
     }
 }

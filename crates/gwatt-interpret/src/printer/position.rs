@@ -19,17 +19,8 @@ impl Control<'_> {
         );
         run.report.note_once("unknown-moves", &message, span);
         note_levelling_if(run, &name, span);
-        self.all_at_full_speed(run);
+        self.at_full_speed(run, self.machine.axis_set);
         run.act(ActionKind::Other, 0.0);
-    }
-
-    /// Every axis at its full speed and acceleration, and from then on in an unknown place.
-    pub(super) fn all_at_full_speed(&mut self, run: &mut Run<'_, '_>) {
-        run.facts.boundary = true;
-        let all = self.machine.axis_set;
-        let end = self.position.at;
-        self.go_at(run, &end, all, Some(f64::INFINITY));
-        self.position.unknown.0 |= all.0;
     }
 
     /// G28: each group of axes from an unknown place to its endstops.
@@ -76,6 +67,23 @@ impl Control<'_> {
                                their time from 0";
                 run.report.note_once("home", message, span);
             }
+        }
+        self.home_moves(run, span);
+    }
+
+    /// What homing moves besides the axes that it homes.
+    fn home_moves(&mut self, run: &mut Run<'_, '_>, span: Span) {
+        let machine = self.machine;
+        for group in &machine.controller.language.printer.home_moves {
+            let group = AxisSet(group.0 & machine.axis_set.0);
+            if group.is_empty() {
+                continue;
+            }
+            self.home_group(run, group);
+            self.position.unknown.0 |= group.0;
+            let message = "G28 moves axes besides homing them (`home_moves` of the machine file): the \
+                           power of the next moves counts from anywhere";
+            run.report.note_once("home", message, span);
         }
     }
 

@@ -1,5 +1,6 @@
 //! Macros of the machine, of which nothing is known, and what they leave unstated.
 
+use super::state::Unstated;
 use crate::code::Motion;
 use crate::control::{Control, Run};
 use crate::knob::KnobState;
@@ -7,33 +8,6 @@ use crate::places::EXTRUDER;
 use gwatt_machine::{ALL_AXES, ExtruderMode};
 use gwatt_motion::Square;
 use gwatt_syntax::source::Span;
-
-/// Modes that a macro may have changed and that the program has not stated since.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Unstated {
-    /// G90 or G91.
-    distance: bool,
-    /// M82 or M83.
-    extruder: bool,
-}
-
-impl Unstated {
-    pub(super) fn of(distance: bool, extruder: bool) -> Self {
-        Self { distance, extruder }
-    }
-
-    pub(super) fn any(self) -> bool {
-        self != Self::default()
-    }
-
-    /// What is unstated here or there.
-    pub(super) fn or(self, other: Self) -> Self {
-        Self::of(
-            self.distance || other.distance,
-            self.extruder || other.extruder,
-        )
-    }
-}
 
 impl Control<'_> {
     /// A macro of which only the machine knows what it does: it may move anywhere, heat, and
@@ -126,5 +100,105 @@ impl Control<'_> {
     #[inline]
     pub(crate) fn has_unstated(&self) -> bool {
         self.printer.adjusts && self.printer.unstated.any()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::execute;
+    use gwatt_motion::Step;
+
+    /// How many moves the lines make, and what is said of them.
+    fn moves(controller: &str, language: &str, lines: &[&str]) -> (usize, Vec<&'static str>) {
+        let rest = format!("[language]\n{language}\n");
+        let (steps, diagnostics) = execute(controller, &rest, lines);
+        let moves = steps.iter().filter(|step| matches!(step, Step::Move(_)));
+        let rules = diagnostics.list.iter().map(|it| it.rule).collect();
+        (moves.count(), rules)
+    }
+
+    const MACRO: [&str; 2] = ["unknown-moves", "macro-settings"];
+
+    /// The firmware's own meaning of a word, its text included, gives way to the machine file's.
+    #[test]
+    fn a_macro_in_place_of_a_word_counts_as_one() {
+        for word in [
+            "T0",
+            "T1",
+            "M900 K0.1",
+            "M73 P5",
+            "M117 Layer 3",
+            "M106 S255",
+            "M600",
+            "G28",
+        ] {
+            let name = word.split(' ').next().unwrap();
+            let list = format!("unknown_macros = [\"{name}\"]");
+            let (count, rules) = moves("klipper", &list, &[word]);
+            assert_eq!(count, 1, "{word}");
+            assert!(
+                MACRO.iter().all(|rule| rules.contains(rule)),
+                "{word}: {rules:?}"
+            );
+            let list = format!("unknown_moves = [\"{name}\"]");
+            let (count, rules) = moves("klipper", &list, &[word, "G1 X5 F600"]);
+            assert_eq!(count, 2, "{word}");
+            assert!(
+                rules.contains(&"unknown-moves") && !rules.contains(&"unstated-mode"),
+                "{word}"
+            );
+        }
+        let plain = ["T0", "M900 K0.1", "M73 P5", "M117 Layer 3", "M106 S255"];
+        assert_eq!(moves("klipper", "", &plain).0, 0);
+    }
+
+    /// A word of motion that is a macro is none of motion any more.
+    #[test]
+    fn a_macro_in_place_of_g1() {
+        let (count, rules) = moves(
+            "klipper",
+            "unknown_macros = [\"G1\"]",
+            &["G0 X5 F600", "G1 X9"],
+        );
+        assert_eq!(count, 2);
+        assert!(MACRO.iter().all(|rule| rules.contains(rule)), "{rules:?}");
+    }
+
+    #[test]
+    fn what_the_machine_file_passes_over_moves_nothing() {
+        let passed = "ignored = [\"M600\"]\nignored_macros = [\"T1\", \"PRINT_*\"]";
+        let lines = ["M600", "T1", "PRINT_START A=1", "G1 X5 F600"];
+        assert_eq!(moves("klipper", passed, &lines).0, 1);
+        // A whole name says more than a beginning, wherever it stands.
+        let own = "unknown_macros = [\"SET_LED_PARK\", \"SET_GCODE_OFFSET\"]";
+        assert_eq!(moves("klipper", own, &["SET_LED_PARK"]).0, 1);
+        assert_eq!(moves("klipper", own, &["SET_GCODE_OFFSET Z=1"]).0, 1);
+        assert_eq!(moves("klipper", own, &["SET_LED_X"]).0, 0);
+    }
+
+    /// The tool after one that a macro changes to is another one.
+    #[test]
+    fn a_tool_after_a_macro_of_a_tool() {
+        assert_eq!(
+            moves("marlin", "unknown_macros = [\"T1\"]", &["T1", "T0"]).0,
+            2
+        );
+    }
+
+    /// X homes; X goes to where Z is probed, and from there to anywhere.
+    #[test]
+    fn what_homing_moves_besides() {
+        let rest = "[language]\nhome_moves = [[\"Z\"], [\"X\", \"Y\"]]\n";
+        let (steps, diagnostics) = execute("klipper", rest, &["G28", "G1 X5 F600"]);
+        let moves: Vec<_> = steps
+            .iter()
+            .filter_map(|step| match step {
+                Step::Move(mv) => Some(mv.unknown_start),
+                Step::Action(_) => None,
+            })
+            .collect();
+        assert_eq!(moves.len(), 3);
+        assert!(moves.iter().all(|unknown| !unknown.is_empty()), "{moves:?}");
+        assert!(diagnostics.list.iter().any(|it| it.rule == "home"));
     }
 }

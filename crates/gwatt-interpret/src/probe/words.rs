@@ -3,7 +3,7 @@
 use super::{SHORTEST_INCH, VALUES};
 use crate::control::{Control, Run};
 use crate::execute::Interpreter;
-use crate::position::ProbeResult;
+use crate::reading::ProbeResult;
 use gwatt_machine::AxisSet;
 use gwatt_machine::units::MM_PER_INCH;
 use gwatt_motion::{MoveKind, Step};

@@ -2,7 +2,7 @@
 //! motion, then a cycle or a modal call, then stops and ends.
 
 use super::code::Code;
-use super::cycle::Call;
+use super::cycle_call::Call;
 use super::{Called, Siemens};
 use crate::code::{GCode, Motion};
 use crate::control::{Control, Run};

@@ -1,7 +1,8 @@
 //! The moves of the drilling cycles.
 
 use super::Siemens;
-use super::cycle::{Call, Kind, Levels};
+use super::cycle::Levels;
+use super::cycle_call::{Call, Kind};
 use crate::control::{Control, Run};
 use crate::modal::{Feed, NumberText};
 use gwatt_machine::units::SECONDS_PER_MINUTE;

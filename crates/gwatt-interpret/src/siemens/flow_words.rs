@@ -6,7 +6,7 @@
 
 use super::reading::Reading;
 use super::value::{Argument, Val};
-use super::{Called, ModalCall, cycle};
+use super::{Called, ModalCall, cycle_call};
 use crate::expression::{Grammar, Outcome};
 use crate::jump::{Direction, Siemens as Go};
 
@@ -265,7 +265,7 @@ impl Reading<'_, '_, '_> {
 
     /// A name that is none of the language: a cycle, or a subprogram.
     pub(super) fn call(&mut self, name: &str, start: usize) -> Outcome<Option<Go>> {
-        if cycle::Kind::named(name).is_some() {
+        if cycle_call::Kind::named(name).is_some() {
             if let Called::Cycle(call) = self.called(name, start)? {
                 self.extra().cycle = Some(call);
             }
@@ -308,7 +308,7 @@ impl Reading<'_, '_, '_> {
             return Err(self.cursor.refused(name, reason, start));
         }
         let arguments = self.arguments()?;
-        if let Some(kind) = cycle::Kind::named(name) {
+        if let Some(kind) = cycle_call::Kind::named(name) {
             let mut values = Vec::new();
             for argument in arguments {
                 values.push(match argument {
@@ -317,7 +317,7 @@ impl Reading<'_, '_, '_> {
                 });
             }
             let span = self.cursor.span(start);
-            return Ok(Called::Cycle(cycle::Call {
+            return Ok(Called::Cycle(cycle_call::Call {
                 kind,
                 values,
                 feeds: name == "CYCLE85",

@@ -14,6 +14,7 @@ pub(super) mod code;
 pub(super) mod codes;
 mod cursor;
 mod cycle;
+mod cycle_call;
 mod cycle_moves;
 mod definition;
 mod expression;
@@ -21,11 +22,13 @@ mod flow_words;
 mod frame;
 mod frame_words;
 mod terms;
+mod limit_words;
 mod limits;
 mod names;
 mod pattern;
 mod polar;
 mod radius;
+mod radius_words;
 mod reading;
 mod saved;
 mod setting;
@@ -84,7 +87,7 @@ struct Extra {
     blends: bool,
     /// DYNNORM and similar words: a group of levels, and which one of it; `None`: any of them.
     level: Option<(usize, Option<usize>)>,
-    cycle: Option<cycle::Call>,
+    cycle: Option<cycle_call::Call>,
     /// CHF, CHR, RND.
     corner: Option<Insert>,
     /// It changes a limit of the axes.
@@ -104,7 +107,7 @@ struct ModalCall {
 
 #[derive(Debug, Clone)]
 enum Called {
-    Cycle(cycle::Call),
+    Cycle(cycle_call::Call),
     Program {
         name: String,
         arguments: Vec<Option<Argument>>,

@@ -1,7 +1,7 @@
 //! Patterns of holes ("Row of holes (HOLES1)", "Circle of holes (HOLES2)"): at
 //! each place the cycle that MCALL has set.
 
-use super::cycle::{Call, Kind};
+use super::cycle_call::{Call, Kind};
 use super::frame_words::at_angle;
 use super::{Called, PatternAt, Siemens};
 use crate::control::{Control, Run};

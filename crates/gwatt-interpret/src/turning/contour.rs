@@ -6,6 +6,7 @@
 //! it is the contour. The program then goes on after them; after G70 it goes
 //! on at the next block.
 
+use super::state::{Contour, ContourCycle};
 use super::words::{note_parameter, turning_needs};
 use super::{X, Z};
 use crate::control::{Control, Effects, HeldBlock, Run};
@@ -21,36 +22,6 @@ use gwatt_syntax::source::Span;
 
 /// Divisions of G73, and lines of a contour.
 const DIVISIONS_MAX: f64 = 10_000.0;
-
-/// A cycle about a contour that is still to be read.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Contour {
-    /// Numbers of its first and last block.
-    pub(crate) first: u64,
-    pub(crate) last: u64,
-    pub(crate) cycle: ContourCycle,
-    /// What is left for finishing in X (of the radius) and Z, mm.
-    pub(super) allowance: [f64; 2],
-    /// Its first block names X and Z: stock removal of type II.
-    pub(crate) two_axes: bool,
-    /// First and last line, from 1, as soon as it has been read.
-    pub(crate) lines: Option<[u64; 2]>,
-}
-
-/// The cycles.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum ContourCycle {
-    /// G70.
-    Finish,
-    /// G71 (deep along X) and G72 (deep along Z).
-    Rough {
-        deep: usize,
-        depth_mm: f64,
-        escape_mm: f64,
-    },
-    /// G73: relief in X and Z, and how many times.
-    Pattern { relief_mm: [f64; 2], times: u64 },
-}
 
 /// The state before a contour.
 #[derive(Debug)]

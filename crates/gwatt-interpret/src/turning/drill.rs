@@ -2,6 +2,7 @@
 //! (G80-G89)" of lathes): R is a distance from where the cycle begins, and the
 //! tool comes back to there.
 
+use super::state::Hole;
 use super::words::turning_needs;
 use super::{X, Z};
 use crate::control::{Control, Run};
@@ -16,18 +17,6 @@ const BY_RETURN: &str = "how far its pecks return is a parameter of the control:
 const MILLISECOND_S: f64 = 1e-3;
 /// The way out of G85 and G89 is this much faster.
 const OUT_FACTOR: f64 = 2.0;
-
-/// What a drilling cycle keeps.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Hole {
-    /// Machine coordinate of the bottom, and of the place where it began.
-    bottom: Option<f64>,
-    begin: f64,
-    /// Distance to the level R, with its sign.
-    level: f64,
-    peck: Option<f64>,
-    dwell_s: f64,
-}
 
 impl Control<'_> {
     pub(super) fn drill(&mut self, number: u16, run: &mut Run<'_, '_>) {

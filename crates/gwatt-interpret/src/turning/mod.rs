@@ -11,10 +11,13 @@ mod piece;
 mod pockets;
 mod rough;
 mod single;
+mod state;
 mod thread;
 mod words;
 
-pub(crate) use contour::{Contour, ContourCycle};
+use state::Held;
+pub(super) use state::Turning;
+pub(crate) use state::{Contour, ContourCycle};
 
 use super::letters::bit;
 use gwatt_machine::AxisValues;
@@ -40,32 +43,6 @@ const TYPE_TWO: &str = "the first block of the contour names X and Z (type II): 
                         pocket leave out the axis that does not move there, or, if the control \
                         goes as in type I, write type_2_as_type_1 = true under [language] of the \
                         machine file";
-
-/// What turning cycles keep from block to block.
-#[derive(Debug, Default)]
-pub(super) struct Turning {
-    /// A contour is read for G71, G72 or G73, which do without the compensation
-    /// of the tool nose radius.
-    pub(super) reads_rough: bool,
-    /// End point and taper of the single cycle in force, machine coordinates.
-    held: Held,
-    /// Depth of cut and escape of G71 and G72, mm.
-    depth: Option<f64>,
-    escape: Option<f64>,
-    /// G73: total relief in X and Z, mm, and the number of divisions.
-    relief: Option<([f64; 2], u64)>,
-    /// Return of G74 and G75, mm.
-    back: Option<f64>,
-    finish: thread::Finish,
-    hole: drill::Hole,
-}
-
-#[derive(Debug, Default, Clone, Copy)]
-struct Held {
-    x: Option<f64>,
-    z: Option<f64>,
-    taper: f64,
-}
 
 /// `at` with other places of X and Z.
 fn xz(at: AxisValues, x: f64, z: f64) -> AxisValues {

@@ -6,9 +6,9 @@
 //! and back to the start. G72 the same with X and Z exchanged. The escape is a
 //! rapid here, which counts higher than a feed.
 
-use super::contour::{Contour, ContourCycle};
 use super::piece::{Piece, TOLERANCE_MM, contour_wrong};
 use super::pockets::Stock;
+use super::state::{Contour, ContourCycle};
 use super::{TYPE_TWO, X, Z};
 use crate::control::{Control, Run};
 use gwatt_machine::{AxisSet, AxisValues};

@@ -2,6 +2,7 @@
 //! Thread Cutting Cycle (G76)"; one block in the format of Series 10/11, which
 //! is that of Haas).
 
+use super::state::Finish;
 use super::words::{note_parameter, turning_needs};
 use super::{X, Z, xz};
 use crate::control::{Control, Run};
@@ -11,32 +12,6 @@ use gwatt_motion::MoveKind::{Rapid, Thread};
 
 /// Repeats of the last pass, as two digits give them.
 const REPEATS_MAX: f64 = 99.0;
-
-/// What the first block of G76 says.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Finish {
-    repeats: u32,
-    /// Length of the chamfer, in leads.
-    chamfer: f64,
-    angle_deg: f64,
-    /// Smallest depth of a pass and what is left for the last ones, mm.
-    least_mm: f64,
-    last_mm: f64,
-    given: bool,
-}
-
-impl Default for Finish {
-    fn default() -> Self {
-        Self {
-            repeats: 1,
-            chamfer: 0.0,
-            angle_deg: 0.0,
-            least_mm: 0.0,
-            last_mm: 0.0,
-            given: false,
-        }
-    }
-}
 
 /// A thread in many passes, machine coordinates.
 struct Passes {

@@ -198,6 +198,9 @@ fn limits(findings: &mut Findings<'_>, table: Option<&LimitsTable>) -> Limits {
     if let Some(overrides) = overrides {
         plausible::overrides(findings, overrides);
     }
+    if let Some(margin) = table.and_then(|table| table.margin.as_ref()) {
+        plausible::margin(findings, margin);
+    }
     let floor = table.and_then(|table| table.min_feed_mm_min.as_ref());
     let ratio = table.and_then(|table| table.min_feed_ratio.as_ref());
     Limits {

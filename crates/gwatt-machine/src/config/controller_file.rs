@@ -123,6 +123,8 @@ pub(crate) struct LanguageTable {
     pub(crate) feed: Option<FeedName>,
     /// When the tool changes where M6 stands in a block that moves; default: not known.
     pub(crate) tool_change: Option<ToolChangeName>,
+    /// The axes that M6 sends to their reference points by itself; default: not known.
+    pub(crate) tool_change_moves: Option<Vec<At<String>>>,
     /// G12 and G13 mill circular pockets, as on a Haas; default false.
     pub(crate) circular_pocket: Option<bool>,
     /// Whether G28 without axes moves all of them; default false.

@@ -187,6 +187,9 @@ pub(crate) struct OwnLanguageTable {
     pub(crate) power_on_tolerance_mm: Option<NotNegative>,
     /// Printers: G10 and G11 until the program sets them.
     pub(crate) retract: Option<At<RetractTable>>,
+    /// Printers: axes that each G28 moves besides those that it homes, each group together, at
+    /// the speeds of homing; where they end is not known (Klipper: `[safe_z_home]`).
+    pub(crate) home_moves: Option<At<Vec<Vec<At<Letter>>>>>,
     /// What a number without a decimal point means.
     pub(crate) decimal_point: Option<PointName>,
     /// Whether words of X are diameters.
@@ -200,6 +203,9 @@ pub(crate) struct OwnLanguageTable {
     /// Whether the tool changes before or after the motion of a block that has M6 in it, which
     /// the builder of the machine decides on many controls.
     pub(crate) tool_change: Option<ToolChangeName>,
+    /// The axes that M6 sends to their reference points by itself, such as \["Z"\]; \[\] where it
+    /// moves none.
+    pub(crate) tool_change_moves: Option<Vec<At<String>>>,
     /// Whether G83 and G87 of a lathe come out to R after each peck (Fanuc: parameter 5101
     /// bit RTR).
     pub(crate) pecks_return_to_r: Option<bool>,
@@ -227,9 +233,9 @@ pub(crate) struct OwnLanguageTable {
     /// Extended commands of a printer that move nothing and set nothing, besides those of
     /// the profile; `*` at the end stands for anything.
     pub(crate) ignored_macros: Option<Vec<At<String>>>,
-    /// Commands of a printer whose moves are not known, besides those of the profile: every
-    /// axis counts at its full speed and acceleration, and its place is not known
-    /// afterwards. They must leave feed and modes as they are.
+    /// Commands of a printer whose moves are not known, besides those of the profile, or G and M
+    /// words of the builder of a machine: every axis counts at its full speed and acceleration,
+    /// and its place is not known afterwards. They must leave feed and modes as they are.
     pub(crate) unknown_moves: Option<Vec<At<String>>>,
     /// Macros of a printer of which nothing is known, besides those of the profile: they may
     /// move, heat, and leave another feed and other modes and limits.

@@ -5,8 +5,9 @@ use super::controller_file::{DistanceName, UnitsName};
 use super::findings::Findings;
 use super::machine_file::{ArcWithoutCenterName, OwnLanguageTable};
 use super::value::{At, NotNegative};
-use super::{printer, profile};
+use super::{listed_words, printer, profile};
 use crate::controller::Language;
+use crate::printer::Command;
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Takes what the table gives into the language of the profile.
@@ -24,6 +25,9 @@ pub(crate) fn take(
         .tool_change
         .map(profile::tool_change)
         .or(language.tool_change);
+    if let Some(axes) = &own.tool_change_moves {
+        language.tool_change_moves = Some(listed_words::axes_named(findings, axes));
+    }
     if let Some(returns) = own.pecks_return_to_r {
         language.pecks_return_to_r = returns;
     }
@@ -56,12 +60,10 @@ pub(crate) fn take(
     if let Some(compensation) = &own.cutter_compensation {
         language.compensation = profile::compensation(compensation);
     }
-    let (g, m) = profile::ignored(findings, own.ignored.as_deref().unwrap_or_default());
-    language.ignored_g.extend(g);
-    language.ignored_m.extend(m);
+    let (ignored_g, ignored_m) =
+        listed_words::ignored(findings, own.ignored.as_deref().unwrap_or_default());
     for (field, list) in [
         ("ignored_macros", &own.ignored_macros),
-        ("unknown_moves", &own.unknown_moves),
         ("unknown_macros", &own.unknown_macros),
     ] {
         if list.is_some() && !language.family.facts().printer {
@@ -76,16 +78,75 @@ pub(crate) fn take(
         }
         language.printer.retract = printer::retract(Some(&retract.value));
     }
+    if let Some(groups) = &own.home_moves {
+        if !language.family.facts().printer {
+            let message = "`home_moves` belongs to the controllers of printers";
+            findings.error("machine-kind", &groups.span, message, None);
+        }
+        language.printer.home_moves = printer::groups(&groups.value);
+    }
+    commands(findings, own, language, [&ignored_g, &ignored_m]);
+    language.ignored_g.extend(ignored_g);
+    language.ignored_m.extend(ignored_m);
+}
+
+/// Takes the commands of a printer. What the machine file says of one stands in place of what
+/// the profile says of it; `words`: the G words (number × 10) and M numbers that it ignores.
+fn commands(
+    findings: &mut Findings<'_>,
+    own: &OwnLanguageTable,
+    language: &mut Language,
+    words: [&[u16]; 2],
+) {
+    let is_printer = language.family.facts().printer;
+    if !is_printer {
+        let words = own.unknown_moves.as_deref().unwrap_or_default();
+        language.unknown_moves = listed_words::moving_words(findings, words);
+    }
+    let mut list = |given| printer::commands(findings, given);
+    let ignored = list(own.ignored_macros.as_ref());
+    let moves = list(own.unknown_moves.as_ref().filter(|_| is_printer));
+    let macros = list(own.unknown_macros.as_ref());
+    let unknown = |one: &Command| {
+        [&moves, &macros]
+            .into_iter()
+            .flatten()
+            .any(|by| covers(by, one))
+    };
+    let passed = |one: &Command| match one {
+        Command::Code(b'G', number) => words[0].contains(number),
+        Command::Code(b'M', number) => words[1].contains(&(number / 10)),
+        _ => false,
+    };
+    let said =
+        |one: &Command| unknown(one) || passed(one) || ignored.iter().any(|by| covers(by, one));
+    language
+        .ignored_g
+        .retain(|number| !unknown(&Command::Code(b'G', *number)));
+    language
+        .ignored_m
+        .retain(|number| !unknown(&Command::Code(b'M', number * 10)));
     let printer = &mut language.printer;
-    let ignored = printer::commands(findings, own.ignored_macros.as_ref());
-    let moves = printer::commands(findings, own.unknown_moves.as_ref());
+    for list in [
+        &mut printer.ignored_macros,
+        &mut printer.unknown_moves,
+        &mut printer.unknown_macros,
+        &mut printer.shifts,
+    ] {
+        list.retain(|one| !said(one));
+    }
     // Macros, whatever their names: nobody says what they switch.
     printer.may_heat.extend(moves.iter().cloned());
-    let macros = printer::commands(findings, own.unknown_macros.as_ref());
-    // This machine's macro stands in place of the firmware's command of its name.
-    printer.ignored_macros.retain(|one| !macros.contains(one));
-    printer.unknown_moves.retain(|one| !macros.contains(one));
     printer.ignored_macros.extend(ignored);
     printer.unknown_moves.extend(moves);
     printer.unknown_macros.extend(macros);
+}
+
+/// Whether all commands of `one` are of `by` too.
+fn covers(by: &Command, one: &Command) -> bool {
+    match one {
+        Command::Code(..) => by == one,
+        Command::Macro(name) => by.is_macro(name.as_bytes()),
+        Command::Macros(begin) => matches!(by, Command::Macros(_)) && by.is_macro(begin.as_bytes()),
+    }
 }

@@ -4,12 +4,13 @@ use std::ops::Range;
 
 use super::findings::Findings;
 use super::machine_file::{AxisTable, ConverterTable, MachineFile, OverrideTable};
+use super::plausible_parts;
 use super::quantity::Given;
-use super::value::Num;
+use super::value::{Num, Part};
 use crate::axis::{AXES, Axis, AxisId, AxisKind};
 use crate::model::{Converter, ForcePoint};
 
-const RULE: &str = "machine-unit";
+pub(super) const RULE: &str = "machine-unit";
 
 /// What a value is usually, and what it looks like when it is outside.
 struct Usual {
@@ -166,7 +167,24 @@ const ROTARY_INERTIA: Usual = Usual {
 pub(crate) fn linear(findings: &mut Findings<'_>, table: &AxisTable, accel: &Given, mass: &Given) {
     fields(findings, table);
     check(findings, &LINEAR_ACCEL, accel.key, accel.value, &accel.span);
-    check(findings, &LINEAR_MASS, mass.key, mass.value, &mass.span);
+    plausible_parts::forces(findings, table);
+    sum(findings, &LINEAR_MASS, AxisKind::Linear, table, mass);
+}
+
+/// Checks what an axis weighs in all; the caret stands where the most of it comes from.
+fn sum(
+    findings: &mut Findings<'_>,
+    usual: &Usual,
+    kind: AxisKind,
+    table: &AxisTable,
+    given: &Given,
+) {
+    if plausible_parts::rotor(findings, kind, table) {
+        return;
+    }
+    let part = plausible_parts::largest(kind, table, given).filter(|_| given.value > usual.high);
+    let (key, span) = part.unwrap_or((given.key, given.span.clone()));
+    check(findings, usual, key, given.value, &span);
 }
 
 /// Checks a rotary axis.
@@ -178,13 +196,7 @@ pub(crate) fn rotary(
 ) {
     fields(findings, table);
     check(findings, &ROTARY_ACCEL, accel.key, accel.value, &accel.span);
-    check(
-        findings,
-        &ROTARY_INERTIA,
-        inertia.key,
-        inertia.value,
-        &inertia.span,
-    );
+    sum(findings, &ROTARY_INERTIA, AxisKind::Rotary, table, inertia);
 }
 
 /// Checks a converter.
@@ -315,6 +327,20 @@ fn friction_span(table: &AxisTable) -> Option<Range<usize>> {
     list.into_iter().flatten().next()
 }
 
+/// More than half of the supply's power is hardly ever kept free.
+const MARGIN: f64 = 0.5;
+
+/// A margin that looks like the share that may be used.
+pub(crate) fn margin(findings: &mut Findings<'_>, margin: &Part) {
+    if margin.value <= MARGIN {
+        return;
+    }
+    let (value, used) = (margin.value, round((1.0 - margin.value) * 100.0));
+    let message = format!("`margin`: {value} leaves {used} % of the peak power to be used");
+    let help = "the share that is kept free is meant: 10 % is 0.1".to_owned();
+    findings.warning(RULE, &margin.span, message, Some(help));
+}
+
 /// Checks the overrides: a factor instead of percent is far below 100.
 pub(crate) fn overrides(findings: &mut Findings<'_>, table: &OverrideTable) {
     fn low<B>(findings: &mut Findings<'_>, key: &str, number: Option<&Num<B>>) {
@@ -382,7 +408,10 @@ fn check(findings: &mut Findings<'_>, usual: &Usual, key: &str, value: f64, span
     // A converted value is named with its quantity.
     let quantity = match key {
         "accel_time_s" if usual.unit != "s" => "an acceleration of ",
-        "inertia_kg_m2" if usual.unit == "kg" => "a mass of ",
+        "inertia_kg_m2" | "rotor_kg_m2" | "screw" | "pulley" | "pinion" if usual.unit == "kg" => {
+            "a mass of "
+        }
+        "rotor_kg_m2" => "an inertia of ",
         _ => "",
     };
     let number = round(value);
@@ -395,6 +424,6 @@ fn check(findings: &mut Findings<'_>, usual: &Usual, key: &str, value: f64, span
 }
 
 /// Four digits: a converted value has many.
-fn round(value: f64) -> f64 {
+pub(super) fn round(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }

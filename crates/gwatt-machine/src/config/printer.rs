@@ -29,7 +29,7 @@ pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> 
     for text in table.endstop_letters.iter().flatten() {
         endstop_letters.extend(one_letter(findings, text));
     }
-    let groups = table.home_together.as_ref();
+    let together = table.home_together.as_ref();
     Printer {
         extruder_mode: match table.extruder_mode {
             None | Some(ExtruderModeName::Follows) => ExtruderMode::Follows,
@@ -54,9 +54,8 @@ pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> 
             .path_accel_spares
             .as_ref()
             .map_or(own.path_accel_spares, |letters| set(letters)),
-        home_together: groups.map_or(own.home_together, |groups| {
-            groups.iter().map(|letters| set(letters)).collect()
-        }),
+        home_together: together.map_or(own.home_together, |list| groups(list)),
+        home_moves: own.home_moves,
         retract: retract(table.retract.as_ref().map(|at| &at.value)),
         endstop_letters,
         ignored_macros: commands(findings, table.ignored_macros.as_ref()),
@@ -66,6 +65,11 @@ pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> 
         optional_part: commands(findings, table.optional_part.as_ref()),
         shifts: commands(findings, table.shifts.as_ref()),
     }
+}
+
+/// Groups of axes.
+pub(crate) fn groups(list: &[Vec<At<Letter>>]) -> Vec<AxisSet> {
+    list.iter().map(|letters| set(letters)).collect()
 }
 
 fn set(letters: &[At<Letter>]) -> AxisSet {

@@ -7,6 +7,7 @@ use super::controller_file::{
     TargetName, ToolChangeName, UnitName, UnitsName,
 };
 use super::findings::Findings;
+use super::listed_words::{axes_named, ignored};
 use super::look_ahead::look_ahead;
 use super::named_knob;
 use super::one_letter::one_letter;
@@ -93,6 +94,11 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
             .map_or(0.0, |tolerance| tolerance.value),
         exact_stop_word: exact_stop_word(findings, table),
         tool_change: table.tool_change.map(tool_change),
+        tool_change_moves: table
+            .tool_change_moves
+            .as_deref()
+            .map(|axes| axes_named(findings, axes)),
+        unknown_moves: Vec::new(),
         rapid_uses_feed: table.rapid_uses_feed.unwrap_or(false),
         ignored_g,
         ignored_m,
@@ -220,23 +226,6 @@ fn dwell(findings: &mut Findings<'_>, table: &LanguageTable) -> Vec<(u8, f64)> {
         list.push((letter, unit.value));
     }
     list
-}
-
-/// Ignored G words (number × 10) and M numbers.
-pub(crate) fn ignored(findings: &mut Findings<'_>, words: &[At<String>]) -> (Vec<u16>, Vec<u16>) {
-    let (mut g, mut m) = (Vec::new(), Vec::new());
-    for text in words {
-        match word::code(&text.value) {
-            Some((b'G', code)) => g.push(code),
-            Some((b'M', code)) if code % 10 == 0 => m.push(code / 10),
-            _ => {
-                let message = format!("\"{}\" is not a G or M word", text.value);
-                let help = Some("such as \"G187\" or \"M48\"".to_owned());
-                findings.error("machine-word", &text.span, message, help);
-            }
-        }
-    }
-    (g, m)
 }
 
 fn planner(findings: &mut Findings<'_>, table: &PlannerTable) -> Option<Planner> {

@@ -63,7 +63,7 @@ fn overload(findings: &mut Findings<'_>, table: &ConverterTable) -> Vec<Overload
             if table.continuous_power_w.is_none() && entries.len() == 1 {
                 let message =
                     "`overload` without `continuous_power_w`: all power counts as overload";
-                let help = "give the power that the converter delivers for ever";
+                let help = "give the power that the converter delivers continuously";
                 findings.warning("machine-converter", &entry.span, message, Some(help.into()));
             }
         }

@@ -140,8 +140,8 @@ pub(crate) fn factors(
             && let Some(gain) = &table.value.position_gain_1_s
         {
             let letter = id.letter() as char;
-            let message = format!("the servo of axis {letter} swings and does not settle");
-            let help = "with a lower gain, a larger bandwidth or a longer integral time it does";
+            let message = format!("the servo of axis {letter} oscillates and does not settle");
+            let help = "give a lower gain, a larger bandwidth or a longer integral time";
             findings.error(RULE, &gain.span, message, Some(help.to_owned()));
         }
     }

@@ -34,24 +34,28 @@ mod bounds;
 mod continuous;
 mod buffered;
 mod limits;
+mod lower_overrides;
 mod overload;
 mod rating;
 mod rms;
 mod span;
 mod store;
 mod terms;
+mod track;
+mod waiting;
 
 use buffered::Added;
 pub(super) use buffered::Buffered;
 pub use rating::{Measure, Rating};
 pub(super) use span::{Known, Span};
 pub(super) use spindle_load::{Level, SpindleLoad, Steps};
+use track::Track;
 
 use super::model::PowerModel;
 use super::piece::straight_line;
 use super::robust::Part;
 use super::steps::StepEnergy;
-use super::trace::{Flow, Slice, Tracer};
+use super::trace::{Flow, Slice};
 use bounds::{bound, least_share, lower_of, shift};
 use gwatt_machine::{Machine, RapidJoint};
 use gwatt_motion::Move;
@@ -59,8 +63,9 @@ use gwatt_plan::lookahead::{Piece, Planned};
 use gwatt_plan::{Plan, Trajectory};
 use limits::Limits;
 use rating::Place;
-use spindle_load::{Levels, Waiting, Waits};
-use terms::{Models, Terms};
+use spindle_load::Levels;
+use terms::Models;
+use waiting::{Waiting, Waits};
 
 /// Watches the converters that have limits over time.
 #[derive(Debug)]
@@ -80,22 +85,6 @@ pub(super) struct DutyCycle {
     least_shares: [f64; 2],
     /// Between rapids and feeds the motion stops.
     apart: bool,
-}
-
-/// One converter and one direction of its power.
-#[derive(Debug)]
-struct Track {
-    converter: usize,
-    flow: Flow,
-    limits: Limits,
-    /// Time so far in s.
-    time_s: f64,
-    /// What is found is no less than at any lower override: see [`terms`].
-    bounds: bool,
-    /// These are no lower than some share of the largest.
-    ends: bool,
-    /// No power is larger at any time, W.
-    most_w: f64,
 }
 
 impl DutyCycle {
@@ -422,74 +411,5 @@ impl DutyCycle {
             }
         }
         ratings
-    }
-}
-
-impl Track {
-    /// The model that it is computed with.
-    fn model<'a>(&self, model: &'a PowerModel, models: &'a Models) -> &'a PowerModel {
-        if self.bounds && self.flow == Flow::FedBack {
-            models.fed_back(model)
-        } else {
-            model
-        }
-    }
-
-    fn tracer<'a>(&self, model: &'a PowerModel) -> Option<Tracer<'a>> {
-        let tracer = model.tracer(self.converter, self.flow)?;
-        Some(if self.bounds { tracer.raised() } else { tracer })
-    }
-
-    /// All power passes here, slice by slice.
-    fn take(&mut self, slice: &Slice, place: Place) {
-        if self.most_w == f64::INFINITY || slice.keeps_below(self.most_w) {
-            self.limits.take(slice, self.time_s, place);
-            self.time_s += slice.duration_s;
-            return;
-        }
-        for (part, above) in slice.sides(self.most_w) {
-            let part = if above {
-                Slice::constant(part.duration_s, self.most_w)
-            } else {
-                part
-            };
-            self.limits.take(&part, self.time_s, place);
-            self.time_s += part.duration_s;
-        }
-    }
-
-    /// What may come after a move, no more than there is at any time.
-    fn capped(&self, slice: &Slice) -> Slice {
-        if slice.peak_w() > self.most_w {
-            Slice::constant(slice.duration_s, self.most_w)
-        } else {
-            *slice
-        }
-    }
-
-    /// A power that lasts for a time that is not known.
-    fn span(&mut self, powers: [f64; 3], span: Span, place: Place) {
-        let power_w = match self.flow {
-            Flow::Drawn => powers[0],
-            Flow::FedBack => powers[1],
-        };
-        let power_w = power_w.min(self.most_w);
-        let terms = Terms {
-            rest_w: powers[2].min(self.most_w),
-            cruise_w: power_w,
-            // The span is as long as it may be.
-            least_share: if self.ends { 1.0 } else { 0.0 },
-            ..Terms::default()
-        };
-        if self.bounds {
-            self.limits.begin(&terms, self.time_s, place);
-        }
-        self.limits.span(power_w, span, self.time_s, place);
-        if self.bounds {
-            self.limits.end(&terms, self.time_s, place);
-        }
-        if span.longest_s.is_finite() {
-            self.time_s += span.longest_s;
-        }
     }
 }

@@ -3,13 +3,7 @@
 //! Input: slices of the moves, which come when a move is planned, and the levels
 //! of the spindle, which come when it is through. Output: their sums.
 
-use std::collections::VecDeque;
-
-use super::rating::Place;
-use super::span::Span;
-use super::terms::Models;
-use super::{Buffered, Track};
-use crate::model::PowerModel;
+use super::Track;
 use crate::trace::{Flow, Slice};
 use gwatt_motion::Move;
 
@@ -51,60 +45,6 @@ pub(crate) struct SpindleLoad {
     pub levels: Steps,
     /// The place at which the axes wait for it; none while they move.
     pub alone: Option<Box<Move>>,
-}
-
-/// Moves whose spindle is not known yet.
-#[derive(Debug, Default)]
-pub(super) struct Waiting {
-    /// Which converter feeds the spindle.
-    pub converter: usize,
-    pub moves: VecDeque<Waits>,
-    /// Room that is used again.
-    pub spare: Vec<Buffered>,
-}
-
-/// A move whose spindle is not known yet.
-#[derive(Debug)]
-pub(super) struct Waits {
-    pub place: Place,
-    pub slices: Buffered,
-    /// Powers by track, for a time that is not known.
-    pub lasting: Option<(Vec<[f64; 3]>, Span)>,
-}
-
-impl Waiting {
-    pub fn room(&mut self) -> Buffered {
-        self.spare.pop().unwrap_or_default()
-    }
-
-    /// Hands the next move to the tracks, with the spindle in it.
-    pub fn emit(
-        &mut self,
-        model: &PowerModel,
-        models: &Models,
-        levels: &[Level],
-        tracks: &mut [Track],
-    ) {
-        let Some(mut waits) = self.moves.pop_front() else {
-            return;
-        };
-        let converter = self.converter;
-        for (index, track) in tracks.iter_mut().enumerate() {
-            let mut spindle = Levels::new(levels, track, converter);
-            let own = track.model(model, models);
-            track.take_kept(index, own, &mut waits.slices, &mut spindle, waits.place);
-            if let Some((powers, span)) = &waits.lasting
-                && let Some(powers) = powers.get(index)
-            {
-                let [more_w, lasting_w] = [spindle.largest_w(), spindle.lasting_w()];
-                let [drawn_w, fed_back_w, rest_w] = *powers;
-                let powers = [drawn_w + more_w, fed_back_w + more_w, rest_w + lasting_w];
-                track.span(powers, *span, waits.place);
-            }
-        }
-        waits.slices.clear();
-        self.spare.push(waits.slices);
-    }
 }
 
 /// The levels of one direction of power, as time goes on.

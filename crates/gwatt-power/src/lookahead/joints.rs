@@ -6,24 +6,10 @@ use crate::demand::Demand;
 use crate::model::PowerModel;
 use crate::steps::{Beyond, Heading, Span, StepEnergy, Steps, close_spans, spans, velocity};
 use crate::surge::Surge;
-use gwatt_machine::{AXES, AxisValues, CornerRule, LookAhead, Machine};
+use gwatt_machine::{AXES, AxisValues};
 use gwatt_motion::Move;
 use gwatt_plan::lookahead::{Piece, Planned};
 use std::ops::RangeInclusive;
-
-/// Servo cycles over which `LinuxCNC` spreads a step: its commands pass a cubic spline.
-const SPLINE_CYCLES: f64 = 2.0;
-
-/// The means over the response time to steps of speed.
-pub(super) fn steps_of(machine: &Machine, rules: &LookAhead) -> Box<Steps> {
-    let lower = machine.limits.override_at.is_none();
-    let new = |response_s| Steps::new(machine.axis_set, response_s, lower);
-    Box::new(match rules.corner {
-        // What is a step at a joint it takes from the acceleration along the path.
-        CornerRule::LinuxCnc { cycle_s, .. } => new(SPLINE_CYCLES * cycle_s).turning(),
-        _ => new(machine.path.response_time_s),
-    })
-}
 
 /// The moves that a piece belongs to.
 fn moves_of(planned: &Planned<u64>) -> RangeInclusive<u64> {

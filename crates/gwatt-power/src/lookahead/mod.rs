@@ -18,10 +18,12 @@ mod constant_speed;
 mod glided;
 mod emit;
 mod joints;
+mod lower_overrides;
 mod open;
 mod pace;
 mod queue;
 mod ranged;
+mod response;
 mod runs;
 mod surges;
 
@@ -148,7 +150,7 @@ impl Ahead {
                 .limits
                 .counts_lower()
                 .then(|| Surges::new(machine, &rules)),
-            steps: joints::steps_of(machine, &rules),
+            steps: response::steps_of(machine, &rules),
         }
     }
 

@@ -25,16 +25,18 @@
 
 mod energy;
 mod peaks;
+mod placed;
 mod slowed;
 mod spans;
 mod surged;
 mod windows;
 
 pub(super) use energy::{StepEnergy, velocity};
+pub(super) use placed::{Beyond, Span};
+use placed::{Placed, Surged};
 pub(super) use spans::{Heading, close_spans, spans};
 
 use peaks::at_most_w;
-use surged::Surged;
 
 use super::demand::{Want, larger};
 use super::model::{ConverterPower, PowerModel};
@@ -46,70 +48,8 @@ use std::collections::VecDeque;
 /// Steps by less than this share of the speed are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// A stretch of time in which the speed of each axis changes evenly.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Span {
-    pub duration_s: f64,
-    /// Of each axis at both ends, mm/s.
-    pub axes_mm_s: [AxisValues; 2],
-    /// The larger one along the path, mm/s.
-    pub top_mm_s: f64,
-    /// It begins at a joint.
-    pub joint: bool,
-    pub beyond: Beyond,
-}
-
-/// By which factors a span may go beyond the plan at lower overrides.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Beyond {
-    /// How much faster the joint before it may be passed.
-    pub joint: f64,
-    /// How much larger its acceleration along the path may be.
-    pub ramp: f64,
-}
-
-impl Beyond {
-    /// Not at all.
-    pub const NONE: Self = Self {
-        joint: 1.0,
-        ramp: 1.0,
-    };
-}
-
-impl Span {
-    /// In one direction, with the speeds at both ends.
-    #[inline]
-    pub fn straight(
-        duration_s: f64,
-        direction: &AxisValues,
-        [from, to]: [f64; 2],
-        joint: bool,
-    ) -> Self {
-        Self {
-            duration_s,
-            axes_mm_s: [velocity(direction, from), velocity(direction, to)],
-            top_mm_s: if from > to { from } else { to },
-            joint,
-            beyond: Beyond::NONE,
-        }
-    }
-}
-
 /// Share by which spans are kept for longer than they are looked at: see `NO_TIME`.
 const REACH: f64 = 1e-6;
-
-/// A span in its place.
-#[derive(Debug, Clone, Copy)]
-struct Placed {
-    span: Span,
-    start_s: f64,
-    /// Where the axes are at its start, mm, from anywhere.
-    place_mm: AxisValues,
-    /// Some axis makes a step at its start.
-    steps: bool,
-    /// By what the speed of each axis changes at its start, mm/s.
-    step_mm_s: AxisValues,
-}
 
 /// What the axes do at most in some time.
 #[derive(Debug, Clone, Copy, Default)]
@@ -304,26 +244,5 @@ impl Steps {
             fed_back_w += fed_back;
         }
         [drawn_w, fed_back_w]
-    }
-}
-
-impl Placed {
-    fn end_s(&self) -> f64 {
-        self.start_s + self.span.duration_s
-    }
-
-    /// Share of its time that has passed at an instant.
-    fn passed(&self, t: f64) -> f64 {
-        let duration_s = self.span.duration_s;
-        (t - self.start_s).clamp(0.0, duration_s) / duration_s
-    }
-
-    /// Speed of an axis, mm/s, and its way since the start, mm, after a share of the time.
-    fn at(&self, axis: usize, passed: f64) -> [f64; 2] {
-        let [first, last] = &self.span.axes_mm_s;
-        let (from, to) = (first[axis], last[axis]);
-        let change = (to - from) * passed;
-        let way_mm = (from + 0.5 * change) * (passed * self.span.duration_s);
-        [from + change, way_mm]
     }
 }

@@ -13,22 +13,13 @@
 
 use super::Steps;
 use super::peaks::{Mean, Peaks};
+use super::placed::Surged;
 use super::velocity;
 use super::windows::NO_TIME;
 use crate::demand::{Demand, Want};
 use crate::model::PowerModel;
 use gwatt_machine::{AXES, AxisValues};
 use gwatt_motion::Move;
-
-/// A piece that lower overrides may speed up or brake.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Surged {
-    pub end_s: f64,
-    /// What they may add to the acceleration of each axis, up and down.
-    accel_mm_s2: [AxisValues; 2],
-    /// The least and the largest speeds that they may bring.
-    speed_mm_s: [AxisValues; 2],
-}
 
 impl Steps {
     /// The last piece may be sped up or braked, or both, with an acceleration along the

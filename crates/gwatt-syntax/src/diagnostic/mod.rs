@@ -1,9 +1,10 @@
 //! What gwatt has to say about a program: as data, with the line under it.
 
 mod render;
+mod printable;
 mod shown;
 
-pub use shown::excerpt;
+pub use printable::excerpt;
 
 use crate::source::{Span, split_line_end};
 
@@ -98,7 +99,7 @@ impl Diagnostic {
         let kept = text.get(from..).unwrap_or_default();
         self.line = line;
         self.span = Span::new(start, end);
-        self.column = shown::decode(text.get(..start).unwrap_or_default()).count() as u32 + 1;
+        self.column = printable::decode(text.get(..start).unwrap_or_default()).count() as u32 + 1;
         self.text = kept.get(..KEPT_BYTES).unwrap_or(kept).to_vec();
         self.text_offset = from as u32;
         self

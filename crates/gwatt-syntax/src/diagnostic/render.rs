@@ -2,7 +2,8 @@
 
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
-use super::shown::{Shown, excerpt};
+use super::printable::excerpt;
+use super::shown::Shown;
 use super::{Diagnostic, Severity};
 
 /// The renderer shall not cut lines: they are short enough already.

@@ -6,6 +6,7 @@
 //! no more blocks than the controller sees. What is not final when that ends is
 //! given to the planner.
 
+mod glider;
 mod terms;
 
 use super::Ahead;
@@ -17,71 +18,15 @@ use super::surges::Surges;
 use crate::demand::Want;
 use crate::model::PowerModel;
 use crate::observer::Observer;
-use gwatt_machine::{AxisSet, LookAhead, Machine};
+use glider::Glide;
+pub(super) use glider::Glider;
+use gwatt_machine::{AxisSet, Machine};
 use gwatt_motion::Move;
-use gwatt_plan::Overrides;
 use gwatt_plan::lookahead::{Gliding, Line};
-use terms::{Terms, lower};
+use terms::lower;
 
 /// What rounding may make of the sum, as a share.
 const ROUNDING: f64 = 1e-6;
-/// Moves that pass at most before another look where one was in vain.
-const PAUSE_MAX: usize = 8;
-
-/// What is known of gliding beforehand, and how far it has come.
-#[derive(Debug)]
-pub(super) struct Glider {
-    terms: Terms,
-    /// Moves that pass before another look, and before the one after that.
-    wait: usize,
-    pause: usize,
-    /// The planner does not know of the last moves.
-    glide: Option<Glide>,
-}
-
-/// Where a motion glides.
-#[derive(Debug)]
-struct Glide {
-    /// Of F, mm/s.
-    feed_mm_s: f64,
-    /// The same under the override, and its inverse.
-    speed_mm_s: f64,
-    s_per_mm: f64,
-    /// The last move, and room for the next one; they change places.
-    lines: [Line; 2],
-    last: usize,
-    /// The first move of all.
-    begun: u64,
-    /// The first move that is not final.
-    first: u64,
-    /// Σ 2·a·L, at least, of the moves after the first one.
-    ramp2: f64,
-}
-
-impl Glider {
-    /// `blocks`: moves that may be open; 0: nothing glides.
-    pub fn new(machine: &Machine, rules: &LookAhead, overrides: Overrides, blocks: usize) -> Self {
-        Self {
-            terms: Terms::new(machine, rules, overrides.feed, blocks),
-            wait: 0,
-            pause: 1,
-            glide: None,
-        }
-    }
-
-    /// A look was in vain.
-    fn back_off(&mut self) {
-        self.wait = self.pause;
-        if self.pause < PAUSE_MAX {
-            self.pause += 1;
-        }
-    }
-
-    /// The first move over which the motion glides, if it does.
-    pub fn begun(&self) -> Option<u64> {
-        self.glide.as_ref().map(|glide| glide.begun)
-    }
-}
 
 /// Whether nothing but the time and the largest speed of a move is of interest,
 /// which has this speed all along.

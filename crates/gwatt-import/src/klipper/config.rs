@@ -1,0 +1,31 @@
+//! Values of the files of Klipper.
+
+use crate::found::Figure;
+use crate::ini::{Item, last};
+use crate::text::Log;
+
+/// Values of the files.
+pub(crate) struct Config<'i, 't> {
+    pub(super) items: &'i [Item<'t>],
+}
+
+impl Config<'_, '_> {
+    /// A value above 0.
+    pub(super) fn positive(&self, log: &mut Log, section: &str, key: &str) -> Option<Figure> {
+        let item = last(self.items, section, key)?;
+        let value = log.positive(&item.place, item.value, &format!("`{key}`"))?;
+        Some(Figure::new(value, item.source()))
+    }
+
+    /// Any number.
+    pub(super) fn number(&self, log: &mut Log, section: &str, key: &str) -> Option<Figure> {
+        let item = last(self.items, section, key)?;
+        let value = log.number(&item.place, item.value)?;
+        Some(Figure::new(value, item.source()))
+    }
+
+    pub(super) fn has(&self, section: &str) -> bool {
+        let mut items = self.items.iter();
+        items.any(|item| item.section.eq_ignore_ascii_case(section))
+    }
+}
