@@ -242,21 +242,24 @@ fn rapids_that_another_mode_would_help() {
          feed by hand",
     );
     let revolution = "the feed in force is per revolution";
-    // Where the block itself says G95.
-    let help = "program G94 (feed per minute) and F in it before the rapid";
-    no_knob(RIG, "S100 M3\nG95 G0 X400\n", 2, revolution, help);
-    let lathe = Rig {
-        controller: "fanuc-lathe",
+    // Where the block itself may say so, in a word that cannot give way to another.
+    let lathe = |controller| Rig {
+        controller,
         rest: "[path]\nrapid = \"linear\"\n",
         ..RIG
     };
-    no_knob(
-        lathe,
-        "G99 G0 X400.\n",
-        1,
-        revolution,
-        "program G98 (feed per minute) and F in it before the rapid",
-    );
+    for (controller, mode, word) in [
+        ("fanuc-lathe", "G99", "G98"),
+        ("fanuc-lathe-b", "G95", "G94"),
+    ] {
+        no_knob(
+            lathe(controller),
+            &format!("{mode}\nG96 S100 G0 X400.\n"),
+            2,
+            revolution,
+            &format!("program {word} (feed per minute) and F in it before the rapid"),
+        );
+    }
 }
 
 #[test]
