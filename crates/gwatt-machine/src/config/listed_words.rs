@@ -13,12 +13,11 @@ pub(crate) fn axes_named(findings: &mut Findings<'_>, letters: &[At<String>]) ->
             [byte] => AxisId::from_letter(*byte),
             _ => None,
         };
-        match named {
-            Some(axis) => axes.insert(axis as usize),
-            None => {
-                let message = format!("\"{}\" is not the letter of an axis", letter.value);
-                findings.error("machine-word", &letter.span, message, None);
-            }
+        if let Some(axis) = named {
+            axes.insert(axis as usize);
+        } else {
+            let message = format!("\"{}\" is not the letter of an axis", letter.value);
+            findings.error("machine-word", &letter.span, message, None);
         }
     }
     axes
@@ -28,13 +27,12 @@ pub(crate) fn axes_named(findings: &mut Findings<'_>, letters: &[At<String>]) ->
 pub(crate) fn moving_words(findings: &mut Findings<'_>, words: &[At<String>]) -> Vec<(u8, u16)> {
     let mut found = Vec::new();
     for text in words {
-        match word::code(&text.value) {
-            Some(code @ (b'G' | b'M', _)) => found.push(code),
-            _ => {
-                let message = format!("\"{}\" is not a G or M word", text.value);
-                let help = Some("such as \"M6\" or \"G88.6\"".to_owned());
-                findings.error("machine-word", &text.span, message, help);
-            }
+        if let Some(code @ (b'G' | b'M', _)) = word::code(&text.value) {
+            found.push(code);
+        } else {
+            let message = format!("\"{}\" is not a G or M word", text.value);
+            let help = Some("such as \"M6\" or \"G88.6\"".to_owned());
+            findings.error("machine-word", &text.span, message, help);
         }
     }
     found
