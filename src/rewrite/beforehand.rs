@@ -110,8 +110,7 @@ impl Return<'_> {
             out.extend_from_slice(words.as_bytes());
             out.extend_from_slice(line_end);
         };
-        let of_itself = self.moves_of_itself();
-        if self.tool_change.is_none() && self.changes_tool() && !of_itself {
+        if self.tool_change.is_none() && self.changes_tool() && !self.moves_of_itself() {
             return Err(TOOL_CHANGE_UNKNOWN);
         }
         let mut last = None;
@@ -120,7 +119,7 @@ impl Return<'_> {
                 return Err("not all of its moves are rapids");
             }
             let mut words = self.way(mv, &place(&mv.end));
-            if last.is_none() && !of_itself {
+            if last.is_none() {
                 // What is switched before the axes move.
                 for word in self.switching() {
                     words.push(' ');
@@ -134,11 +133,7 @@ impl Return<'_> {
         if !self.absolute_before {
             push("G91");
         }
-        let mut edits = if of_itself {
-            Vec::new()
-        } else {
-            self.words_at(text, &last)
-        };
+        let mut edits = self.words_at(text, &last);
         if !apply(text, &mut edits, &mut out) {
             return Err("its words overlap");
         }
@@ -165,7 +160,11 @@ impl Return<'_> {
         let words = self.block.words.iter();
         let stops = |word: &Word| word.letter == b'M' && STOPS.contains(&word.value);
         let tool_last = self.changes_tool() && self.tool_change == Some(ToolChange::AfterMotion);
-        let stays = move |word: &Word| tool_last && (word.letter == b'T' || is_tool_change(word));
+        let of_itself = self.moves_of_itself();
+        let stays = move |word: &Word| {
+            let changes = is_tool_change(word);
+            changes && of_itself || tool_last && (word.letter == b'T' || changes)
+        };
         let switches = |word: &Word| matches!(word.letter, b'M' | b'S' | b'T');
         words.filter(move |word| switches(word) && !stops(word) && !stays(word))
     }
