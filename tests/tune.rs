@@ -295,3 +295,18 @@ fn a_tuning_as_json_knows_what_is_not_known() {
         tuned_text(&result).contains("no axis has an anti-resonance: nothing is to be evened out")
     );
 }
+
+/// Its zeros would be those of others.
+#[test]
+fn one_axis_alone_has_nothing_to_be_matched_to() {
+    let result = tuned(
+        vec![axis('X', &[(40.0, 0.02)])],
+        wish(Discretization::Matched),
+    );
+    let text = tuned_text(&result);
+    assert!(
+        text.contains("one axis alone has nothing to be matched to: give a recording of each axis"),
+        "{text}"
+    );
+    assert!(!text.contains("no axis has"), "{text}");
+}

@@ -181,25 +181,29 @@ impl Messages {
     /// Findings in `file`, with the lines under them. What is found again and again is shown
     /// a few times, and then the lines are named.
     pub fn diagnostics(&mut self, file: &str, diagnostics: &[Diagnostic]) {
-        let mut kinds: Vec<(String, Vec<&Diagnostic>)> = Vec::new();
+        let mut kinds: Vec<Alike<'_>> = Vec::new();
         for diagnostic in diagnostics {
-            let kind = kind(diagnostic);
-            match kinds.iter_mut().find(|(known, _)| *known == kind) {
-                Some((_, alike)) => alike.push(diagnostic),
-                None => kinds.push((kind, vec![diagnostic])),
+            let kind = diagnostic.kind();
+            match kinds.iter_mut().find(|it| it.kind == kind) {
+                Some(known) => known.found.push(diagnostic),
+                None => kinds.push(Alike {
+                    kind,
+                    found: vec![diagnostic],
+                }),
             }
         }
         let shown = |diagnostic: &Diagnostic| {
-            let mut alike = kinds.iter().map(|(_, alike)| alike.iter().take(SHOWN));
-            alike.any(|mut first| first.any(|it| std::ptr::eq(*it, diagnostic)))
+            let mut first = kinds.iter().flat_map(Alike::shown);
+            first.any(|it| std::ptr::eq(*it, diagnostic))
         };
         for diagnostic in diagnostics.iter().filter(|it| shown(it)) {
             let text = diagnostic.render(file, self.style.colour);
             self.line(text);
         }
-        for (kind, alike) in &kinds {
-            if let Some(more @ [_, ..]) = alike.get(SHOWN..) {
-                let (count, lines) = (more.len(), lines(more));
+        for alike in &kinds {
+            let count = alike.count() - alike.shown().len() as u64;
+            if count > 0 {
+                let (lines, kind) = (alike.lines(), &alike.kind);
                 self.line(format_args!(
                     "{file}: and {count} more like it in {lines}: {kind}"
                 ));
@@ -213,8 +217,11 @@ impl Messages {
             return self.error(format_args!("{program}: {}", chain(failure)));
         };
         self.diagnostics(program, diagnostics);
-        if *more > 0 {
-            self.error(format_args!("{program}: and {more} more errors"));
+        let alike: u64 = diagnostics.iter().map(|it| it.alike).sum();
+        match more.saturating_sub(alike) {
+            0 => {}
+            1 => self.error(format_args!("{program}: and 1 more error")),
+            more => self.error(format_args!("{program}: and {more} more errors")),
         }
     }
 
@@ -223,27 +230,42 @@ impl Messages {
     }
 }
 
-/// Findings of one kind that are shown.
+/// Findings of one kind that are all shown; of more the first one stands for all.
 const SHOWN: usize = 3;
 
-/// What makes findings alike: rule and message, whatever the numbers in it; that of a word,
-/// such as G5.1, belongs to it.
-fn kind(diagnostic: &Diagnostic) -> String {
-    let mut kind = String::new();
-    let (mut is_number, mut is_word) = (false, false);
-    for sign in diagnostic.message.chars() {
-        let goes_on = (is_number || is_word) && matches!(sign, '.' | ',');
-        if !(sign.is_ascii_digit() || goes_on) {
-            kind.push(sign);
-            (is_number, is_word) = (false, sign.is_alphabetic());
-        } else if is_word {
-            kind.push(sign);
-        } else if !is_number {
-            kind.push('…');
-            is_number = true;
+/// Findings of one kind.
+struct Alike<'a> {
+    kind: String,
+    found: Vec<&'a Diagnostic>,
+}
+
+impl<'a> Alike<'a> {
+    /// How many there are, listed or not.
+    fn count(&self) -> u64 {
+        let more = self.found.iter().map(|it| it.alike).sum::<u64>();
+        self.found.len() as u64 + more
+    }
+
+    /// Those that are shown.
+    fn shown(&self) -> &[&'a Diagnostic] {
+        let shown = if self.count() > SHOWN as u64 {
+            1
+        } else {
+            SHOWN
+        };
+        self.found.get(..shown).unwrap_or(&self.found)
+    }
+
+    /// Where the others are; of those that are not listed the last line is known.
+    fn lines(&self) -> String {
+        let last = self.found.iter().map(|it| it.alike_to).max().unwrap_or(0);
+        let others = self.found.get(self.shown().len()..).unwrap_or_default();
+        match (others, last) {
+            (others, 0) => lines(others),
+            ([], last) => format!("lines up to {last}"),
+            (others, last) => format!("{}, and up to {last}", lines(others)),
         }
     }
-    format!("[{}] {kind}", diagnostic.rule)
 }
 
 /// Where findings are: `line 3`, or `lines 3-5, 9`.

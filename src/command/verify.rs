@@ -6,7 +6,7 @@ use std::path::Path;
 use std::slice;
 
 use anyhow::{Context, Result};
-use gwatt::identify::overlay::{Agreement, Overlay, PowerTrace, overlay};
+use gwatt::identify::overlay::{Overlay, PowerTrace, overlay};
 use gwatt::identify::{MappedColumn, Outcome, merge};
 use gwatt::machine::{ALL_AXES, Machine};
 use gwatt::report::{
@@ -110,7 +110,7 @@ fn deliver(
     let html = spooled(args.html.as_deref(), |out| {
         verified_page(names, found, trace, out)
     })?;
-    let good = found.agreement() == Agreement::Good;
+    let good = found.agreement().is_of_the_program();
     let is_refused = args.into.is_some() && !good && !args.force;
     let merged = match &args.into {
         Some(path) if !is_refused => {

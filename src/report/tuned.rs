@@ -107,7 +107,11 @@ fn axis_text(text: &mut String, axis: &AxisResponse) {
 fn filters_text(text: &mut String, tuned: &Tuned) {
     let correction = &tuned.correction;
     if correction.filters.iter().all(|f| f.sections.is_empty()) {
-        text.push_str("no axis has an anti-resonance: nothing is to be evened out\n");
+        text.push_str(if tuned.axes.len() == 1 {
+            "one axis alone has nothing to be matched to: give a recording of each axis that moves with it\n"
+        } else {
+            "no axis has an anti-resonance: nothing is to be evened out\n"
+        });
         return;
     }
     let low_pass = match correction.low_pass {

@@ -64,6 +64,8 @@ pub fn verified_text(names: &VerifiedNames, overlay: &Overlay) -> String {
         energy_ratio,
         measured_peak_w,
         factor,
+        factor_error,
+        short_peaks,
         ..
     } = overlay;
     let mut text = format!("{}: {} on {}\n", names.log, names.program, names.machine);
@@ -108,8 +110,10 @@ pub fn verified_text(names: &VerifiedNames, overlay: &Overlay) -> String {
     line(
         "peaks",
         format!(
-            "at most {:.3} × predicted, {} of them",
-            factor.seen, factor.peaks
+            "at most {:.3} ± {factor_error:.3} × predicted, {} of them{}",
+            factor.seen,
+            factor.peaks,
+            too_few(*short_peaks)
         ),
     );
     line(
@@ -123,6 +127,14 @@ pub fn verified_text(names: &VerifiedNames, overlay: &Overlay) -> String {
     blocks_above(overlay, &mut text);
     let _ = writeln!(text, "verdict: {}", verdict(overlay));
     text
+}
+
+/// How many peaks say nothing of their own.
+fn too_few(short: usize) -> String {
+    match short {
+        0 => String::new(),
+        more => format!(", {more} with too few samples"),
+    }
 }
 
 /// What the power of an axis shows.
@@ -164,7 +176,7 @@ fn blocks_above(overlay: &Overlay, text: &mut String) {
                 it.block,
                 power(it.measured_w),
                 power(it.predicted_w),
-                (it.ratio() - 1.0) * 100.0,
+                (it.measured_by_predicted() - 1.0) * 100.0,
                 it.start_s,
             );
         }
@@ -173,8 +185,13 @@ fn blocks_above(overlay: &Overlay, text: &mut String) {
 
 /// The agreement in a sentence.
 fn verdict(overlay: &Overlay) -> String {
+    let short = overlay.short_peaks;
     let why = match overlay.agreement() {
         Agreement::Good => return "good".to_owned(),
+        Agreement::SampledSlowly => &*format!(
+            "{short} of {} have too few samples; the margin rests on the slope, measured by predicted: record at shorter steps",
+            overlay.factor.peaks
+        ),
         Agreement::RunsOtherwise => {
             "times differ along the program: record at 100 % override, without waits for the operator"
         }
@@ -200,7 +217,9 @@ struct Record<'a> {
     measured_peak_w: Figure,
     peak_factor: Figure,
     peak_factor_seen: Figure,
+    peak_factor_error: Figure,
     peaks: usize,
+    short_peaks: usize,
     margin: Figure,
     margin_of_others: Figure,
     margin_beyond_axes: Figure,
@@ -236,7 +255,7 @@ struct BlockRecord {
     start_s: Figure,
     measured_w: Figure,
     predicted_w: Figure,
-    ratio: Figure,
+    measured_by_predicted: Figure,
 }
 
 impl From<&BlockPeaks> for BlockRecord {
@@ -247,7 +266,7 @@ impl From<&BlockPeaks> for BlockRecord {
             start_s: Figure(it.start_s),
             measured_w: Figure(it.measured_w),
             predicted_w: Figure(it.predicted_w),
-            ratio: Figure(it.ratio()),
+            measured_by_predicted: Figure(it.measured_by_predicted()),
         }
     }
 }
@@ -277,7 +296,9 @@ pub fn verified_json(
         measured_peak_w: Figure(overlay.measured_peak_w),
         peak_factor: Figure(overlay.factor.factor),
         peak_factor_seen: Figure(overlay.factor.seen),
+        peak_factor_error: Figure(overlay.factor_error),
         peaks: overlay.factor.peaks,
+        short_peaks: overlay.short_peaks,
         margin: Figure(overlay.margin()),
         margin_of_others: Figure(overlay.margin_of_others()),
         margin_beyond_axes: Figure(overlay.margin_beyond_axes()),

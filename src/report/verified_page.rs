@@ -63,7 +63,7 @@ pub fn verified_page(
         "begins, s",
         "measured",
         "predicted",
-        "ratio",
+        "measured by predicted",
     ] {
         write!(out, "<th scope=\"col\">{name}</th>")?;
     }
@@ -78,7 +78,7 @@ pub fn verified_page(
             block.start_s,
             power(block.measured_w),
             power(block.predicted_w),
-            block.ratio(),
+            block.measured_by_predicted(),
         )?;
     }
     writeln!(out, "</tbody>\n</table>\n</section>")?;

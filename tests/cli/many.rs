@@ -254,13 +254,32 @@ fn what_is_found_again_and_again_is_counted() {
     let ran = shop.run(&[&["check", "strange.nc"], &ON[..]].concat());
     assert_eq!(ran.code, 2);
     let shown = ran.stderr.matches(" --> strange.nc:").count();
-    assert_eq!(shown, 3, "{}", ran.stderr);
+    assert_eq!(shown, 1, "{}", ran.stderr);
     assert!(
         ran.stderr
-            .contains("strange.nc: and 37 more like it in lines 5-41: [unsupported-code] G5.5 is"),
+            .contains("strange.nc: and 39 more like it in lines 3-41: [unsupported-code] G5.5 is"),
         "{}",
         ran.stderr
     );
+}
+
+/// Only the first 50 errors are kept in full, with the first ones of further kinds.
+#[test]
+fn what_is_found_very_often_is_one_message() {
+    let shop = Shop::new();
+    let many = "G5.5 X2\n".repeat(500) + "G38.9 X2\nG5.5 X1\n" + &"G38.9 X2\n".repeat(3);
+    shop.put("strange.nc", format!("G0 X1\n{many}M30\n"));
+    let ran = shop.run(&[&["check", "strange.nc"], &ON[..]].concat());
+    assert_eq!(ran.code, 2);
+    let shown = ran.stderr.matches(" --> strange.nc:").count();
+    assert_eq!(shown, 2, "{}", ran.stderr);
+    for line in [
+        "strange.nc: and 500 more like it in lines 3-51, and up to 503: [unsupported-code] G5.5 is",
+        "strange.nc: and 3 more like it in lines up to 506: [",
+    ] {
+        assert!(ran.stderr.contains(line), "{}", ran.stderr);
+    }
+    assert!(!ran.stderr.contains("more errors"), "{}", ran.stderr);
 }
 
 #[test]

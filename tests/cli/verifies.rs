@@ -95,7 +95,7 @@ fn shift_pace_and_margin_are_found() {
     assert_eq!(lines, [2, 3, 4, 5, 6, 7, 8, 9]);
     assert!(
         shop.get("v.csv")
-            .starts_with("line,runs,start_s,measured_w,predicted_w,ratio\n2,1,12.")
+            .starts_with("line,runs,start_s,measured_w,predicted_w,measured_by_predicted\n2,1,12.")
     );
     let picture = shop.get("v.svg");
     assert!(
@@ -248,7 +248,7 @@ fn factors_of_axes_are_found_and_go_into_the_machine_file() {
     assert!(alone > 0.05 && beyond < 0.01, "{json}");
     // The blocks are compared with what the file predicts.
     let blocks = json["blocks"].as_array().unwrap().iter();
-    let worst = blocks.filter_map(|it| it["ratio"].as_f64());
+    let worst = blocks.filter_map(|it| it["measured_by_predicted"].as_f64());
     assert!(worst.fold(0.0, f64::max) > 1.1, "{json}");
     let written = shop.get("mill.toml");
     let x = written.split("[axes.Y]").next().unwrap();

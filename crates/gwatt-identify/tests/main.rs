@@ -4,6 +4,7 @@ mod cells;
 mod coverage;
 mod effects;
 mod lateness;
+mod overlaid;
 mod presets;
 mod rubbing;
 mod simulated;

@@ -1,7 +1,7 @@
 //! Collects what is to be said about a program while it is read.
 
 use crate::rules::rules_of;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::g_codes::{USER_DEFINED, code_number, refused_m_name};
 use gwatt_machine::Language;
@@ -9,7 +9,7 @@ use gwatt_syntax::Word;
 use gwatt_syntax::diagnostic::{Diagnostic, Severity};
 use gwatt_syntax::source::Span;
 
-/// The diagnostics of a run: the first errors in full, the rest counted.
+/// The diagnostics of a run: the first errors in full, the rest counted by their kinds.
 #[derive(Debug, Default)]
 pub struct Diagnostics {
     /// What is kept, in program order.
@@ -17,24 +17,56 @@ pub struct Diagnostics {
     /// Number of errors, listed or not.
     pub errors: u64,
     said: HashSet<&'static str>,
+    /// Errors that are listed.
+    listed: u64,
+    /// Where the first error of each kind is listed, once further ones are counted only.
+    kinds: HashMap<String, usize>,
     overflow: Option<Diagnostic>,
 }
 
 impl Diagnostics {
     /// Errors that are listed; further ones are counted only.
     pub const LISTED: u64 = 50;
+    /// Errors of kinds that none of those had, listed next to them.
+    const OTHER_KINDS: u64 = 50;
 
-    /// Adds a finding; errors beyond [`Diagnostics::LISTED`] are counted only.
+    /// Adds a finding; errors beyond [`Diagnostics::LISTED`] are counted only, by the first one of
+    /// their kind.
     pub fn push(&mut self, diagnostic: Diagnostic) -> &mut Diagnostic {
         if diagnostic.severity == Severity::Error {
             self.errors += 1;
-            if self.errors > Self::LISTED {
+            if self.errors > Self::LISTED && !self.is_of_a_new_kind(&diagnostic) {
                 return self.overflow.insert(diagnostic);
             }
+            self.listed += 1;
         }
         self.list.push(diagnostic);
         let last = self.list.len() - 1;
         &mut self.list[last]
+    }
+
+    /// Counts an error to the first one of its kind, unless it is the first one itself and there
+    /// is room for it.
+    fn is_of_a_new_kind(&mut self, error: &Diagnostic) -> bool {
+        if self.kinds.is_empty() {
+            let listed = self.list.iter().enumerate();
+            for (place, it) in listed.filter(|(_, it)| it.severity == Severity::Error) {
+                self.kinds.entry(it.kind()).or_insert(place);
+            }
+        }
+        let kind = error.kind();
+        match self.kinds.get(&kind).map(|place| self.list.get_mut(*place)) {
+            Some(Some(first)) => {
+                first.alike += 1;
+                first.alike_to = first.alike_to.max(error.line);
+                false
+            }
+            _ if self.listed < Self::LISTED + Self::OTHER_KINDS => {
+                self.kinds.insert(kind, self.list.len());
+                true
+            }
+            _ => false,
+        }
     }
 
     /// True for the first call with this name: what is said once.
@@ -45,7 +77,7 @@ impl Diagnostics {
     /// Number of errors beyond those listed.
     #[must_use]
     pub fn more(&self) -> u64 {
-        self.errors.saturating_sub(Self::LISTED)
+        self.errors.saturating_sub(self.listed)
     }
 }
 

@@ -2,12 +2,14 @@
 //! more.
 //!
 //! A servo factor multiplies the acceleration, not the friction. Of each recorded power the least
-//! factor counts with which the prediction reaches it somewhere near that time.
+//! factor counts with which the prediction reaches it somewhere near that time; samples around a
+//! top, fitted by the prediction, may show a larger one.
 
 use super::align::Place;
 use super::curve::Curve;
+use super::meter::{SLACK, shown, times_looked_at};
+use super::tops::{Model, tops};
 use super::trace::{AxisTrace, PowerTrace};
-use super::{SLACK, shown, times_looked_at};
 use crate::peak_factor::HALF;
 
 /// Share of the predicted power that the acceleration must have: where friction is most of it,
@@ -46,9 +48,9 @@ pub(super) fn factor(
     curve: &AxisCurve,
     own: &AxisTrace,
     log: &PowerTrace,
-    place: Place,
-    width_s: f64,
+    (place, width_s): (Place, f64),
 ) -> Option<AxisFactor> {
+    let slack_s = SLACK * log.step_s() + width_s / 2.0;
     let looked_at_s = times_looked_at(&curve.power, log, place);
     let power = shown(&curve.power, &looked_at_s, place, width_s);
     let accel = shown(&curve.accel, &looked_at_s, place, width_s);
@@ -58,7 +60,6 @@ pub(super) fn factor(
         .map(|(t, (power_w, accel_w))| (*t, *power_w, *accel_w))
         .collect();
     let predicted_peak_w = power.iter().copied().fold(0.0, f64::max);
-    let slack_s = SLACK * log.step_s() + width_s / 2.0;
     let (mut from, mut is_inside) = (0, false);
     let (mut motor, mut peaks, mut measured_peak_w) = (1.0_f64, 0, 0.0_f64);
     for (t, measured_w) in log.time_s.iter().zip(&own.power_w) {
@@ -83,11 +84,43 @@ pub(super) fn factor(
         }
         is_inside = is_peak;
     }
-    (peaks > 0 && motor.is_finite()).then_some(AxisFactor {
+    let model = Model {
+        curve: &curve.power,
+        part: Some(&curve.accel),
+        place,
+        width_s,
+    };
+    (peaks > 0 && motor.is_finite()).then(|| AxisFactor {
         letter: curve.letter,
-        motor,
+        motor: motor.max(fitted(&model, own, log, predicted_peak_w)),
         peaks,
         measured_peak_w,
         predicted_peak_w,
     })
+}
+
+/// The largest factor that fits the samples of a peak, or those of all peaks together.
+fn fitted(model: &Model<'_>, own: &AxisTrace, log: &PowerTrace, peak_w: f64) -> f64 {
+    let (accel_w, fixed_w) = model.at(&log.time_s, 0.0);
+    // Where friction leads there is no top.
+    let rows = accel_w.iter().zip(&fixed_w).map(|(accel, fixed)| {
+        if *accel >= LEADS * (accel + fixed) {
+            accel + fixed
+        } else {
+            f64::NEG_INFINITY
+        }
+    });
+    let rows: Vec<f64> = rows.collect();
+    let found = tops(model, log, &own.power_w, (&rows, peak_w)).found;
+    let (mut both, mut square) = (0.0, 0.0);
+    let samples = log.time_s.iter().zip(&own.power_w).zip(&rows);
+    for (((t, own), whole), (accel, fixed)) in samples.zip(accel_w.iter().zip(&fixed_w)) {
+        let is_inside = (model.place.start_s..=model.place.end_s).contains(t);
+        if is_inside && *whole >= HALF * peak_w && !own.is_nan() {
+            both += accel * (own - fixed);
+            square += accel * accel;
+        }
+    }
+    let of_all = if square > 0.0 { both / square } else { 1.0 };
+    found.iter().map(|it| it.factor).fold(of_all, f64::max)
 }

@@ -93,6 +93,12 @@ impl Curve {
     pub fn reader(&self) -> Reader<'_> {
         Reader { curve: self, at: 0 }
     }
+
+    /// The same from a time on.
+    pub(super) fn reader_from(&self, time_s: f64) -> Reader<'_> {
+        let at = self.time_s.partition_point(|t| *t <= time_s);
+        Reader { curve: self, at }
+    }
 }
 
 /// Reads a curve at times that ascend.

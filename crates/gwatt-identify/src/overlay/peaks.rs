@@ -1,11 +1,15 @@
 //! Measured peaks next to predicted ones.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use super::align::Place;
 use super::curve::Curve;
+use super::line::Line;
+use super::meter::{SLACK, shown, times_looked_at};
+use super::tops::{Model, STATED, tops};
 use super::trace::PowerTrace;
-use crate::peak_factor::{PeakFactor, factor_of, ratios};
+use crate::peak_factor::{HALF, PeakFactor, factor_of};
 
 /// The largest powers of a block.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,44 +29,126 @@ pub struct BlockPeaks {
 impl BlockPeaks {
     /// Measured by predicted power.
     #[must_use]
-    pub fn ratio(&self) -> f64 {
+    pub fn measured_by_predicted(&self) -> f64 {
         self.measured_w / self.predicted_w
     }
 }
 
-/// What comparing them comes to.
+/// By which factor peaks exceed what is predicted.
 pub(super) struct Peaks {
     pub(super) factor: PeakFactor,
-    pub(super) blocks: Vec<BlockPeaks>,
+    /// Through all samples.
+    pub(super) line: Line,
+    /// The error of the largest of them, as it is stated.
+    pub(super) error: f64,
+    /// Those with too few samples.
+    pub(super) short: usize,
+    /// Whether the largest is among these, or most are.
+    pub(super) is_sampled_slowly: bool,
+    /// The largest power that is predicted near each sample, W: as near as tops are.
+    pub(super) near_w: Vec<f64>,
 }
 
-/// Compares the peaks of a log with those of the prediction. Either may be a little late: a
-/// measured power counts against the largest that is predicted near it.
-pub(super) fn compare(curve: &Curve, log: &PowerTrace, near_w: &[f64], place: Place) -> Peaks {
+/// A factor with its error.
+#[derive(Clone, Copy)]
+struct Exceeds {
+    factor: f64,
+    error: f64,
+}
+
+/// Compares the peaks of a log with those of the prediction. No peak counts with less than what
+/// its samples, fitted by the prediction, show, and none of its samples exceeds what is predicted
+/// near it by more; all of them together not with less than the fitted line shows.
+pub(super) fn compare(model: &Model<'_>, log: &PowerTrace) -> Peaks {
+    let (place, curve) = (model.place, model.curve);
+    let step_s = log.step_s();
+    let looked_at_s = times_looked_at(curve, log, place);
+    let looked_at = shown(curve, &looked_at_s, place, model.width_s);
+    let near = |slack_s: f64| largest_near(&log.time_s, (&looked_at_s, &looked_at), slack_s);
+    let is_inside = |k: usize| {
+        let t = log.time_s.get(k);
+        t.is_some_and(|t| (place.start_s..=place.end_s).contains(t))
+    };
+    let widest_w = near(SLACK * step_s + model.width_s / 2.0);
+    let all = widest_w.iter().enumerate();
+    let inside = all.filter(|(k, _)| is_inside(*k)).map(|(_, w)| *w);
+    let peak_w = inside.fold(0.0, f64::max);
+    let predicted_w = shown(curve, &log.time_s, place, model.width_s);
+    let line = Line::of(model, log, &predicted_w);
+    let tops = tops(model, log, &log.power_w, (&predicted_w, peak_w));
+    let slack_s = tops.slack(step_s) * step_s + model.width_s / 2.0;
+    let (mut ratios, mut short, mut is_sampled_slowly) = (Vec::new(), 0, false);
+    let mut seen = Exceeds {
+        factor: line.gain,
+        error: line.error,
+    };
+    let mut tops_left = tops.found.iter().peekable();
+    for run in runs(&widest_w, HALF * peak_w, is_inside) {
+        let mut most = Exceeds {
+            factor: 0.0,
+            error: 0.0,
+        };
+        let mut highest_w = 0.0_f64;
+        let samples = log.power_w.iter().zip(&widest_w).enumerate();
+        for (_, (own, near)) in samples.skip(run.start).take(run.len()) {
+            highest_w = highest_w.max(*near);
+            most = most.or_more(own / near, STATED * tops.scatter_w / near);
+        }
+        let mut has_top = false;
+        while let Some(top) = tops_left.next_if(|it| it.sample < run.end) {
+            has_top |= top.sample >= run.start;
+            most = most.or_more(top.factor, top.error);
+        }
+        if !has_top {
+            // Of its own it shows too little.
+            most = most.or_more(line.gain, line.error);
+        }
+        if !has_top && tops.is_whole {
+            short += 1;
+            is_sampled_slowly |= highest_w >= peak_w;
+        }
+        seen = seen.or_more(most.factor, most.error);
+        ratios.push(most.factor);
+    }
+    let mut factor = factor_of(&ratios);
+    factor.seen = factor.seen.max(seen.factor);
+    factor.factor = factor.factor.max(factor.seen);
     Peaks {
-        factor: factor(log, near_w, place),
-        blocks: by_block(curve, log, near_w, place),
+        factor,
+        line,
+        error: seen.error,
+        short,
+        is_sampled_slowly: is_sampled_slowly || 2 * short > factor.peaks,
+        near_w: near(slack_s),
     }
 }
 
-/// By which factor the peaks of a log exceed what is predicted near them.
-pub(super) fn factor(log: &PowerTrace, near_w: &[f64], place: Place) -> PeakFactor {
-    let inside = |t: f64| t >= place.start_s && t <= place.end_s;
-    let of = |values: &[f64]| -> Vec<f64> {
-        let all = log.time_s.iter().zip(values);
-        all.filter(|(t, _)| inside(**t)).map(|(_, w)| *w).collect()
-    };
-    let (near, measured) = (of(near_w), of(&log.power_w));
-    let peak_w = near.iter().copied().fold(0.0, f64::max);
-    factor_of(&ratios(&near, &measured, peak_w))
+impl Exceeds {
+    fn or_more(self, factor: f64, error: f64) -> Self {
+        if factor > self.factor {
+            Self { factor, error }
+        } else {
+            self
+        }
+    }
+}
+
+/// The ranges of samples above a power.
+fn runs(near_w: &[f64], above_w: f64, is_inside: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
+    let mut found: Vec<Range<usize>> = Vec::new();
+    for (k, near) in near_w.iter().enumerate() {
+        if *near > 0.0 && *near >= above_w && is_inside(k) {
+            match found.last_mut() {
+                Some(last) if last.end == k => last.end = k + 1,
+                _ => found.push(k..k + 1),
+            }
+        }
+    }
+    found
 }
 
 /// At each time the largest of the values whose own times are so near; both ascend.
-pub(super) fn largest_near(
-    time_s: &[f64],
-    (own_s, values): (&[f64], &[f64]),
-    slack_s: f64,
-) -> Vec<f64> {
+fn largest_near(time_s: &[f64], (own_s, values): (&[f64], &[f64]), slack_s: f64) -> Vec<f64> {
     // Indices of values that fall, of which the first is the largest.
     let mut falling: std::collections::VecDeque<usize> = std::collections::VecDeque::new();
     let (mut next, mut found) = (0, Vec::with_capacity(time_s.len()));
@@ -87,7 +173,13 @@ pub(super) fn largest_near(
     found
 }
 
-fn by_block(curve: &Curve, log: &PowerTrace, near_w: &[f64], place: Place) -> Vec<BlockPeaks> {
+/// The largest powers of each block, measured and predicted near.
+pub(super) fn by_block(
+    curve: &Curve,
+    log: &PowerTrace,
+    near_w: &[f64],
+    place: Place,
+) -> Vec<BlockPeaks> {
     let pace = place.pace(curve);
     let mut found: BTreeMap<u64, BlockPeaks> = BTreeMap::new();
     let mut at = 0;

@@ -43,6 +43,10 @@ pub struct Diagnostic {
     pub text: Vec<u8>,
     /// Bytes of the line that were cut off before `text`.
     pub text_offset: u32,
+    /// Further findings of its kind that are not listed.
+    pub alike: u64,
+    /// The line of the last of them.
+    pub alike_to: u64,
 }
 
 /// Bytes of a line that are kept, so that findings stay small.
@@ -80,6 +84,8 @@ impl Diagnostic {
             span: Span::default(),
             text: Vec::new(),
             text_offset: 0,
+            alike: 0,
+            alike_to: 0,
         }
     }
 
@@ -103,6 +109,27 @@ impl Diagnostic {
         self.text = kept.get(..KEPT_BYTES).unwrap_or(kept).to_vec();
         self.text_offset = from as u32;
         self
+    }
+
+    /// What makes findings alike: rule and message, whatever the numbers in it; that of a word,
+    /// such as G5.1, belongs to it.
+    #[must_use]
+    pub fn kind(&self) -> String {
+        let mut kind = String::new();
+        let (mut is_number, mut is_word) = (false, false);
+        for sign in self.message.chars() {
+            let goes_on = (is_number || is_word) && matches!(sign, '.' | ',');
+            if !(sign.is_ascii_digit() || goes_on) {
+                kind.push(sign);
+                (is_number, is_word) = (false, sign.is_alphabetic());
+            } else if is_word {
+                kind.push(sign);
+            } else if !is_number {
+                kind.push('…');
+                is_number = true;
+            }
+        }
+        format!("[{}] {kind}", self.rule)
     }
 
     /// Adds what to do about it.
