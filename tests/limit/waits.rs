@@ -7,7 +7,8 @@ use crate::shop::Shop;
 /// 30 s no more than `power_w` may be drawn.
 fn shop(controller: &str, power_w: f64) -> Shop {
     let converter = format!("peak_power_w = 2000\ncontinuous_power_w = {power_w}\nwindow_s = 30");
-    let path = "[path]\nmode = \"exact-stop\"\nrapid = \"linear\"";
+    let path =
+        "[path]\nmode = \"exact-stop\"\nrapid = \"linear\"\n[language]\ntool_change_moves = []";
     let shop = Shop::mill(controller, &converter, path, "");
     let machine = shop.get("mill.toml");
     shop.put(

@@ -9,7 +9,7 @@ mod config;
 mod homing;
 mod macros;
 
-use config::Config;
+use config::{Config, MIN};
 use std::f64::consts::PI;
 
 use gwatt_machine::AxisId;
@@ -35,7 +35,6 @@ const AXES: [(AxisId, &str); 3] = [
 ];
 
 /// Minutes to seconds.
-const MIN: f64 = 60.0;
 
 /// The files that a line includes.
 pub(crate) fn include(line: &str) -> Option<&str> {

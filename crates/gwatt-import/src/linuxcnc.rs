@@ -4,9 +4,11 @@
 //! in machine units per second; `[AXIS_n]` of a number is that of versions before 2.8.
 
 mod changes;
+mod config;
 mod hal;
 mod kinematics_module;
 
+use config::{Config, named};
 use kinematics_module::by_name;
 use std::path::Path;
 
@@ -32,45 +34,6 @@ const INCH: f64 = 25.4;
 pub(crate) fn include(line: &str) -> Option<&str> {
     let name = line.strip_prefix("#INCLUDE")?.trim();
     (!name.is_empty()).then_some(name)
-}
-
-/// The values, and how many millimetres and degrees a unit of the machine has.
-struct Config<'j> {
-    items: Vec<Item<'j>>,
-    linear: f64,
-    angular: f64,
-    hal: Hal,
-}
-
-impl Config<'_> {
-    fn item(&self, sections: &[String], key: &str) -> Option<&Item<'_>> {
-        sections
-            .iter()
-            .find_map(|section| last(&self.items, section, key))
-    }
-
-    fn positive(
-        &self,
-        log: &mut Log,
-        sections: &[String],
-        key: &str,
-        factor: f64,
-    ) -> Option<Figure> {
-        let item = self.item(sections, key)?;
-        let value = log.positive(&item.place, item.value, key)?;
-        Some(Figure::new(value * factor, named(item)))
-    }
-
-    fn number(&self, log: &mut Log, sections: &[String], key: &str, factor: f64) -> Option<Figure> {
-        let item = self.item(sections, key)?;
-        let value = log.number(&item.place, item.value)?;
-        Some(Figure::new(value * factor, named(item)))
-    }
-}
-
-/// A value with its section.
-fn named(item: &Item<'_>) -> String {
-    format!("[{}] {}", item.section, item.source())
 }
 
 fn section(name: &str) -> Vec<String> {

@@ -27,20 +27,23 @@ impl Control<'_> {
             return;
         }
         run.facts.boundary = true;
-        let in_parameters = self.rules.places_in_parameters;
-        if run.words.has_axes() || in_parameters {
-            run.facts.fixed.get_or_insert(MOVES_OF_ITSELF);
-        } else {
-            run.facts.reference = Some(1);
-        }
-        if in_parameters {
+        if self.rules.places_in_parameters {
             // LinuxCNC: to zero of the machine, or to wherever the INI file says.
+            run.facts.fixed.get_or_insert(MOVES_OF_ITSELF);
             return self.at_full_speed(run, named);
         }
         let (place, unknown) = self.reference_point(1, named, span, run);
         let mut end = self.position.at;
         for axis in named.iter() {
             end[axis] = place[axis];
+        }
+        if unknown.is_empty() && end == self.position.at {
+            return;
+        }
+        if run.words.has_axes() {
+            run.facts.fixed.get_or_insert(MOVES_OF_ITSELF);
+        } else {
+            run.facts.reference = Some(1);
         }
         self.go(run, MoveKind::Rapid, &end, unknown, None);
     }

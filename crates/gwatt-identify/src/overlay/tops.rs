@@ -145,8 +145,8 @@ pub(super) fn tops(
             *taken = true;
         }
         // The flank of a higher one is no top.
-        let beside = from.checked_sub(1).map_or(f64::NEG_INFINITY, value);
-        if beside.max(value(to)) > value(top) {
+        let before = from.checked_sub(1).map_or(f64::NEG_INFINITY, value);
+        if before.max(value(to)) > value(top) {
             continue;
         }
         fits.extend(fitted(model, log, (measured_w, step_s), (from, top, to)));

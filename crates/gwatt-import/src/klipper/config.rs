@@ -4,6 +4,9 @@ use crate::found::Figure;
 use crate::ini::{Item, last};
 use crate::text::Log;
 
+/// Seconds in a minute.
+pub(super) const MIN: f64 = 60.0;
+
 /// Values of the files.
 pub(crate) struct Config<'i, 't> {
     pub(super) items: &'i [Item<'t>],

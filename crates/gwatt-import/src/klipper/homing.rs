@@ -5,7 +5,7 @@
 
 use gwatt_machine::AxisId;
 
-use super::{Config, MIN};
+use super::config::{Config, MIN};
 use crate::found::{Figure, Found, highest};
 use crate::ini::last;
 use crate::text::Log;

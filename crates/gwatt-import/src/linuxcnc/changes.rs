@@ -4,7 +4,7 @@
 
 use gwatt_machine::{ALL_AXES, AxisId};
 
-use super::{Config, named};
+use super::config::{Config, named};
 use crate::found::Found;
 use crate::ini::{Item, last};
 use crate::text::Log;

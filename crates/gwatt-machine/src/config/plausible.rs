@@ -4,13 +4,11 @@ use std::ops::Range;
 
 use super::findings::Findings;
 use super::machine_file::{AxisTable, ConverterTable, MachineFile, OverrideTable};
-use super::plausible_parts;
+use super::plausible_parts::{self, RULE, round};
 use super::quantity::Given;
 use super::value::{Num, Part};
 use crate::axis::{AXES, Axis, AxisId, AxisKind};
 use crate::model::{Converter, ForcePoint};
-
-pub(super) const RULE: &str = "machine-unit";
 
 /// What a value is usually, and what it looks like when it is outside.
 struct Usual {
@@ -332,7 +330,8 @@ const MARGIN: f64 = 0.5;
 
 /// A margin that looks like the share that may be used.
 pub(crate) fn margin(findings: &mut Findings<'_>, margin: &Part) {
-    if margin.value <= MARGIN {
+    // One of 1 and more is refused.
+    if margin.value <= MARGIN || margin.value >= 1.0 {
         return;
     }
     let (value, used) = (margin.value, round((1.0 - margin.value) * 100.0));
@@ -421,9 +420,4 @@ fn check(findings: &mut Findings<'_>, usual: &Usual, key: &str, value: f64, span
         usual.unit
     );
     findings.warning(RULE, span, message, Some(doubt.to_owned()));
-}
-
-/// Four digits: a converted value has many.
-pub(super) fn round(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
 }

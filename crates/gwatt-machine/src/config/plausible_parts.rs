@@ -5,16 +5,17 @@ use std::ops::Range;
 use super::axis_table::AxisTable;
 use super::findings::Findings;
 use super::parts;
-use super::plausible::{RULE, round};
 use super::quantity::Given;
 use super::value::Num;
 use crate::axis::AxisKind;
+
+pub(super) const RULE: &str = "machine-unit";
 
 /// Gravity, m/s².
 const G_M_S2: f64 = 9.81;
 /// No motor of a sliding axis has a rotor as heavy as this, kg·m².
 const ROTOR_KG_M2: f64 = 0.1;
-/// A lighter one may weigh much more than what it moves, behind a fine screw.
+/// A lighter one may weigh much more than what it moves by a fine screw.
 const LIGHT_ROTOR_KG_M2: f64 = 1e-3;
 /// No rotor weighs as many times what it moves.
 const ROTOR_SHARE: f64 = 1000.0;
@@ -27,7 +28,7 @@ const SCREW_DIAMETER_MM_KG: f64 = 0.4;
 /// be that of the rotor for the most part.
 const FRICTION: f64 = 1e-3;
 const FRICTION_OF_ALL: f64 = 1e-4;
-/// More than its weight hangs on no axis; doubled, since counterweights pull too.
+/// No axis carries more than its weight; doubled, since counterweights pull too.
 const WEIGHTS: f64 = 2.0;
 
 /// Where a number stands, and its key.
@@ -138,6 +139,11 @@ pub(super) fn largest<'k>(kind: AxisKind, table: &AxisTable, given: &Given) -> O
     }
 }
 
+/// Four digits: a converted value has many.
+pub(super) fn round(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
 #[cfg(test)]
 mod tests {
     use crate::Machine;
@@ -186,7 +192,7 @@ mod tests {
                 "1.2: `rotor_kg_m2`: 1.2 kg·m² is unusually large / kg·cm² given? 1 kg·cm² is 0.0001 kg·m²"
             ]
         );
-        // 0.012 kg·m² behind a screw of 0.2 mm: (2π/0.0002)² · 0.012 kg.
+        // 0.012 kg·m² at a screw of 0.2 mm: (2π/0.0002)² · 0.012 kg.
         let fine = SOUND
             .replace("0.0012", "0.012")
             .replace("lead_mm = 10", "lead_mm = 0.2");
