@@ -173,7 +173,7 @@ pub fn overlay(curve: &Curve, axes: &[AxisCurve], log: &PowerTrace) -> Outcome<O
     let factor_beyond_axes = if pairs.is_empty() {
         peaks.factor
     } else {
-        peaks::compare(&model(&curve.raised(more)), log).factor
+        peaks::compare_raised(&model(&curve.raised(more)), log).factor
     };
     Ok(Overlay {
         start_s: place.start_s,

@@ -60,6 +60,16 @@ struct Exceeds {
 /// its samples, fitted by the prediction, show, and none of its samples exceeds what is predicted
 /// near it by more; all of them together not with less than the fitted line shows.
 pub(super) fn compare(model: &Model<'_>, log: &PowerTrace) -> Peaks {
+    compare_from(model, log, true)
+}
+
+/// The same of a prediction that is raised where axes draw, and not where they feed back: the
+/// line through all of it shows no factor.
+pub(super) fn compare_raised(model: &Model<'_>, log: &PowerTrace) -> Peaks {
+    compare_from(model, log, false)
+}
+
+fn compare_from(model: &Model<'_>, log: &PowerTrace, from_line: bool) -> Peaks {
     let (place, curve) = (model.place, model.curve);
     let step_s = log.step_s();
     let looked_at_s = times_looked_at(curve, log, place);
@@ -79,7 +89,7 @@ pub(super) fn compare(model: &Model<'_>, log: &PowerTrace) -> Peaks {
     let slack_s = tops.slack(step_s) * step_s + model.width_s / 2.0;
     let (mut ratios, mut short, mut is_sampled_slowly) = (Vec::new(), 0, false);
     let mut seen = Exceeds {
-        factor: line.gain,
+        factor: if from_line { line.gain } else { 0.0 },
         error: line.error,
     };
     let mut tops_left = tops.found.iter().peekable();
