@@ -34,8 +34,6 @@ const AXES: [(AxisId, &str); 3] = [
     (AxisId::Z, "stepper_z"),
 ];
 
-/// Minutes to seconds.
-
 /// The files that a line includes.
 pub(crate) fn include(line: &str) -> Option<&str> {
     let name = line.strip_prefix("[include ")?.split(']').next()?.trim();
