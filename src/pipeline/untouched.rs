@@ -1,7 +1,7 @@
 //! Why the words of a block are left as they are, and what helps.
 
 use super::line_key::IN_A_FILE;
-use crate::interpret::{Facts, TOOL_CHANGE_UNKNOWN};
+use crate::interpret::{Facts, MOVES_OF_ITSELF, TOOL_CHANGE_UNKNOWN};
 use crate::machine::{Lathe, Machine, PathMode};
 use crate::motion::{CYCLE, TURNING_CYCLE};
 
@@ -71,6 +71,10 @@ pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static s
         TOOL_CHANGE_UNKNOWN => {
             "the machine's builder decides which: tool_change = \"before-motion\" or \
              \"after-motion\" under [language] of the machine file"
+        }
+        MOVES_OF_ITSELF => {
+            "write a change of the tool on a line of its own; how a word of the machine's \
+             builder moves, only the machine can change"
         }
         COMPENSATED | UNDER_COMPENSATION => "lower the feed by hand",
         WITHOUT_STOP if machine.controller.name != language.name => {

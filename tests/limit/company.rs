@@ -226,6 +226,39 @@ fn tools_that_are_changed_before_the_motion() {
     assert!(errors.contains("changes the tool"), "{errors}");
 }
 
+/// M6 of a Haas takes Z to machine zero: that way is gone by a feed before it, with the selection
+/// of the tool. Next to axes the block stays as it is.
+#[test]
+fn a_change_of_the_tool_that_moves_z() {
+    let rest = "[path]\nrapid = \"linear\"\n[language]\ntool_change = \"before-motion\"\n\
+                [offsets]\nG54 = {}\n";
+    let shop = Shop::mill("haas", "peak_power_w = 520", rest, "reference_mm = 300");
+    assert_snapshot!(limited(&shop, "G21 G90 G54\nG1 Z30. F400\nM6 T2\nG0 X10.\nM30\n"), @r"
+    G21 G90 G54
+    G1 Z30. F400
+    G4 P1
+    G9 G1 Z300. T2 F28799.
+    G0 F400
+    M6
+    G1
+    G0 X10.
+    M30
+    ");
+    for order in ["before-motion", "after-motion"] {
+        let rest = rest.replace("before-motion", order);
+        let shop = Shop::mill("haas", "peak_power_w = 520", &rest, "reference_mm = 300");
+        shop.put(
+            "a.nc",
+            "G21 G90 G54\nG1 Z30. F400\nG0 X400. Y290. M6 T2\nM30\n",
+        );
+        let (code, _, errors) = shop.run("limit a.nc --allow feed -o out.nc");
+        assert_eq!(code, 1, "{errors}");
+        let why = "the machine moves axes of itself in it";
+        let help = "write a change of the tool on a line of its own";
+        assert!(errors.contains(why) && errors.contains(help), "{errors}");
+    }
+}
+
 /// Elsewhere the order is the builder's: until the machine file says it, the block stays as
 /// it is, and the return too, whose way would be gone before the tool changes or after.
 #[test]

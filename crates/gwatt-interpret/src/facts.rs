@@ -25,6 +25,9 @@ impl ToolWords {
 /// Why a block with M6 keeps its words where nothing says when the tool changes.
 pub const TOOL_CHANGE_UNKNOWN: &str = "it changes the tool, before or after its motion";
 
+/// Why a block keeps its words in which the machine moves of itself.
+pub const MOVES_OF_ITSELF: &str = "the machine moves axes of itself in it";
+
 /// Why a block with two G words of one modal group keeps its words: it is the last that counts.
 pub const TWO_OF_A_GROUP: &str = "it has two G words of one group";
 

@@ -1,12 +1,11 @@
 //! Moves that a machine makes of itself: at a tool change, and by words of its builder.
 
 use super::control::{Control, Run};
+use super::facts::MOVES_OF_ITSELF;
+use super::letters::AXIS_LETTERS;
 use gwatt_machine::AxisSet;
 use gwatt_motion::{ActionKind, MoveKind};
 use gwatt_syntax::source::Span;
-
-/// Why a block keeps its words in which the machine moves of itself.
-const MOVES_OF_ITSELF: &str = "the machine moves axes of itself in it";
 
 impl Control<'_> {
     /// M6 sends the axes that the machine file names to their reference points, straight from
@@ -40,10 +39,11 @@ impl Control<'_> {
         if unknown.is_empty() && end == self.position.at {
             return;
         }
-        if run.words.has_axes() {
-            run.facts.fixed.get_or_insert(MOVES_OF_ITSELF);
-        } else {
+        // Axes that have gone before the change are commanded too.
+        if run.words.present & AXIS_LETTERS == 0 {
             run.facts.reference = Some(1);
+        } else {
+            run.facts.fixed.get_or_insert(MOVES_OF_ITSELF);
         }
         self.go(run, MoveKind::Rapid, &end, unknown, None);
     }
