@@ -31,6 +31,8 @@ pub(super) struct Line<'f, 'm> {
     pub(super) block: &'f mut Block,
     pub(super) steps: &'f mut Vec<Step>,
     pub(super) facts: &'f mut Facts,
+    /// How many calls and repeated sections were open when it began.
+    pub(super) depth: usize,
     /// Names of the files of subprograms so far.
     pub(super) files: &'f [String],
     /// The state after it.
@@ -160,6 +162,7 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
             block,
             steps,
             facts,
+            depth: 0,
             files: &[],
             interpreter,
         }))
@@ -250,6 +253,7 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
         } = self;
         let flow = flow.as_mut()?;
         let effects = Effects::new(steps, facts, diagnostics);
+        let depth = flow.depth();
         *stuck |= !flow.conclude(run, interpreter, block, effects);
         let place = flow.now();
         Some(Line {
@@ -258,6 +262,7 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
             block,
             steps,
             facts,
+            depth,
             files: flow.files(),
             interpreter,
         })

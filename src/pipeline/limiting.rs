@@ -2,14 +2,15 @@
 //! certifier piece by piece, so that nothing of it is held for long.
 
 use std::cell::Cell;
-use std::collections::BTreeMap;
 use std::io::{self, Cursor, Read, Seek, Write};
 
 use super::analyze::judge;
 use super::conclusion::holds_one_way;
 use super::derate::{aim_lower, lower_further, missed_narrowly};
 use super::executor::read_whole;
-use super::expand::{NOT_WRITTEN_OUT, OriginalRows, Traced, Way, expand, explain, in_fixed_blocks};
+use super::expand::{
+    Asked as Lines, NOT_WRITTEN_OUT, OriginalRows, Traced, Way, expand, explain, in_fixed_blocks,
+};
 use super::pace::{by_acceleration, sooner};
 use super::pause::limit_waiting;
 use super::preset_notes::{NO_PRESET, NOT_SET};
@@ -217,7 +218,7 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
             Some(&mut original),
         )?;
     }
-    let mut ways = BTreeMap::new();
+    let mut ways = Lines::default();
     let mut last: Option<LimitSummary> = None;
     for way in [
         Way::Placed,
@@ -231,19 +232,12 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
         }
         let all = refused.reasons.len() >= Summary::KEPT;
         let before = ways.clone();
-        let reasons = refused.reasons.iter().filter(|it| it.file.is_none());
-        ways.extend(reasons.map(|reason| (reason.line, way)));
+        ways.all(all.then_some(way));
+        ways.extend(&refused.reasons, way);
         if ways == before {
             break;
         }
-        let wanted = |line| {
-            if all {
-                Some(way)
-            } else {
-                ways.get(&line).copied()
-            }
-        };
-        let (expanded, notes) = expand(&program, machine, paths, wanted)?;
+        let (expanded, notes) = expand(&program, machine, paths, &ways)?;
         if last.is_none() || way == Way::WrittenOut {
             first
                 .before

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::hole::Placed;
 use super::single::{CycleBlock, Lines, Singles, TURNING};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Move, MoveKind, Step};
@@ -21,9 +22,14 @@ impl Singles<'_> {
         held: &BTreeMap<u8, Vec<u8>>,
         returns_to_r: bool,
         place: impl Fn(&AxisValues) -> AxisValues,
-    ) -> Result<Vec<u8>, &'static str> {
+    ) -> Result<Placed, &'static str> {
         if TURNING.contains(&of.number) || self.language.dialect.lathe.is_some() {
             return Err("all its moves follow from each other");
+        }
+        if !of.steps.iter().any(Step::moves_axes) {
+            // It only says what the blocks after it do (K0, L0), and they say all of it again.
+            let (way, block) = (Vec::new(), of.text.to_vec());
+            return Ok(Placed { way, block });
         }
         let ways = ways(of.steps);
         if !of.modal.absolute || of.block.words.iter().any(repeats) {
@@ -39,9 +45,31 @@ impl Singles<'_> {
         for mv in way {
             self.one_move(mv, of, &place, &mut lines)?;
         }
+        let way = lines.take_whole();
         let level = self.lacks_level(of, returns_to_r).then_some("G99 ");
         restate(of, held, level, &mut lines)?;
-        Ok(lines.finish(of.text))
+        let block = lines.finish(of.text);
+        Ok(Placed { way, block })
+    }
+
+    /// The block as it stays, with the words of the cycle that lines before it have ended; `None`
+    /// where they cannot be written.
+    #[must_use]
+    pub fn restated(
+        &self,
+        of: &CycleBlock<'_>,
+        held: &BTreeMap<u8, Vec<u8>>,
+        returns_to_r: bool,
+    ) -> Option<Vec<u8>> {
+        // Increments would begin elsewhere.
+        let increments = !of.modal.absolute;
+        if increments || TURNING.contains(&of.number) || self.language.dialect.lathe.is_some() {
+            return None;
+        }
+        let mut lines = Lines::new(of, |place| *place);
+        let level = self.lacks_level(of, returns_to_r).then_some("G99 ");
+        restate(of, held, level, &mut lines).ok()?;
+        Some(lines.finish(of.text))
     }
 
     /// The block with all rapids before it, down to R too, and with that back to the level
@@ -52,7 +80,7 @@ impl Singles<'_> {
         held: &BTreeMap<u8, Vec<u8>>,
         returns_to_r: bool,
         place: impl Fn(&AxisValues) -> AxisValues,
-    ) -> Result<Vec<u8>, &'static str> {
+    ) -> Result<Placed, &'static str> {
         const WHY: &str = "its rapids are not those before and after it";
         if TURNING.contains(&of.number) || self.language.dialect.lathe.is_some() {
             return Err("all its moves follow from each other");
@@ -74,6 +102,7 @@ impl Singles<'_> {
         for mv in way {
             self.one_move(mv, of, &place, &mut lines)?;
         }
+        let way = lines.take_whole();
         let back_to_r = back.is_some() || self.lacks_level(of, returns_to_r);
         restate(of, held, back_to_r.then_some("G99 "), &mut lines)?;
         if let Some(back) = back {
@@ -81,7 +110,8 @@ impl Singles<'_> {
             lines.out.extend_from_slice(b"G98 ");
             self.one_move(back, of, &place, &mut lines)?;
         }
-        Ok(lines.finish(of.text))
+        let block = lines.finish(of.text);
+        Ok(Placed { way, block })
     }
 }
 

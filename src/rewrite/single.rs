@@ -8,6 +8,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use super::hole::Placed;
 use super::number::{decimal, rounded, rounded_finely, with_blanks};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Action, ActionKind, Corner, FeedMode, Modal, Motion, Move, MoveKind, Step};
@@ -105,7 +106,7 @@ impl<'m> Singles<'m> {
         held: &BTreeMap<u8, Vec<u8>>,
         returns_to_r: bool,
         place: impl Fn(&AxisValues) -> AxisValues,
-    ) -> Result<Vec<u8>, &'static str> {
+    ) -> Result<Placed, &'static str> {
         if let Err(why) = self.may_write_out(of.number) {
             let around = self.place_around(of, held, returns_to_r, place);
             return around.map_err(|_| why);
@@ -133,7 +134,8 @@ impl<'m> Singles<'m> {
             lines.push(&format!("F{}", decimal(feed.value, true)));
         }
         self.restore_motion(of, &mut lines)?;
-        Ok(lines.finish(of.text))
+        let (way, block) = (Vec::new(), lines.finish(of.text));
+        Ok(Placed { way, block })
     }
 
     /// Whether the moves of a cycle may stand as single blocks.
@@ -374,6 +376,16 @@ impl<'a> Lines<'a> {
             self.out.truncate(self.out.len() - self.line_end.len());
         }
         self.out
+    }
+
+    /// The lines so far; what has no end yet stays.
+    pub(super) fn take_whole(&mut self) -> Vec<u8> {
+        let ends = self.out.ends_with(self.line_end);
+        if ends {
+            std::mem::take(&mut self.out)
+        } else {
+            Vec::new()
+        }
     }
 
     pub(super) fn push(&mut self, words: &str) {

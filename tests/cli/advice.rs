@@ -140,7 +140,7 @@ fn lines_next_to_a_cycle_are_not_advised_what_is_not_written() {
 /// a feed that no value brings down.
 #[test]
 fn what_is_permitted_is_not_advised() {
-    let tap = "G21 G90\nG0 X0 Y0 Z50.\nM29 S500\nG84 X100. Z-20. R2. F500.\nG80\nM30\n";
+    let tap = "G21 G90\nG0 X0 Y0 Z50.\nS500\nG84 X100. Z-20. R2. F500. K2\nG80\nM30\n";
     let low = "G21 G90\nG64\nG0 X0 Y0 Z-50.\nG0 X100. Y20.\nM30\n";
     let loaded = "G21 G90\nM8\nG1 X100. F3000\nM30\n";
     let load = "[[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 1500";
@@ -168,7 +168,7 @@ fn what_is_permitted_is_not_advised() {
     let (code, shown, _) = shop.run("check a.nc");
     assert_eq!(code, 1);
     assert!(
-        shown.contains("it is not written out as single blocks: M29")
+        shown.contains("it is not written out as single blocks: it taps")
             && !shown.contains("--allow expand"),
         "{shown}"
     );

@@ -74,6 +74,9 @@ pub struct Facts {
     pub tool_words: Option<ToolWords>,
     /// It selects a tool: the modal state before it must be the original's.
     pub selects_tool: bool,
+    /// It announces that the next block taps rigidly (M29), and nothing may come between them:
+    /// the modal state before it must be the original's.
+    pub announces_tap: bool,
     /// Its word that stops or ends the program once the axes stand: the modal state before
     /// and after its motion must be the original's.
     pub stop_word: Option<Span>,
@@ -92,6 +95,8 @@ pub struct Facts {
     /// The program does not go on at the next line: see
     /// [`Interpreter::transfer`](super::Interpreter).
     pub transfers: bool,
+    /// Its part in the order of execution, once that is followed.
+    pub passage: Passage,
     /// Millimetres in a program unit when the block's F is read, or would be.
     pub feed_mm_per_unit: f64,
     /// The cycle that it calls by name (SINUMERIK).
@@ -105,10 +110,25 @@ impl Facts {
     pub fn looks_at_state(&self) -> bool {
         self.boundary
             || self.selects_tool
+            || self.announces_tap
             || self.stop_word.is_some()
             || self.reads_state
             || self.turns_knob
     }
+}
+
+/// What a block has to do with the order of execution.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Passage {
+    /// Nothing.
+    #[default]
+    None,
+    /// It has other blocks run, and goes on after itself.
+    Call,
+    /// It begins or ends a subprogram, and gives no value back.
+    Edge,
+    /// It branches, loops, or calls a macro with values.
+    Other,
 }
 
 /// A cycle that is called by its name.

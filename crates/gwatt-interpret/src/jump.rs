@@ -1,6 +1,7 @@
 //! Where a program goes on, when that is not the next line.
 
 use super::expression::Value;
+use super::facts::Passage;
 use super::label::Label;
 use super::lathe_cycle::LatheCycle;
 use super::parameters::LOCALS;
@@ -35,6 +36,28 @@ pub(crate) enum Transfer {
     Contour(Box<Contour>),
     /// The same for `LinuxCNC`, where it stands in a subroutine.
     LatheCycle(Box<LatheCycle>),
+}
+
+impl Transfer {
+    /// What that makes of its block.
+    pub(super) fn passage(&self) -> Passage {
+        match self {
+            Self::Structure { verb, .. } => match verb {
+                Verb::Sub | Verb::EndSub(None) | Verb::Return(None) => Passage::Edge,
+                Verb::Call(_) => Passage::Call,
+                _ => Passage::Other,
+            },
+            Self::Call(call) if call.arguments.is_none() => Passage::Call,
+            Self::Siemens(Siemens::Repeat { .. } | Siemens::Call { again: false, .. })
+            | Self::Go(Go::Local(_) | Go::File(_) | Go::Call { .. }) => Passage::Call,
+            Self::Return { block: None }
+            | Self::Siemens(Siemens::Return)
+            | Self::Go(Go::Return) => Passage::Edge,
+            // A block that only ends or begins something.
+            Self::Siemens(Siemens::Next) | Self::Go(Go::Next) => Passage::None,
+            _ => Passage::Other,
+        }
+    }
 }
 
 /// What a block of SINUMERIK says about the order of execution.

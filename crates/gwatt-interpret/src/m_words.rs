@@ -7,7 +7,16 @@ use gwatt_motion::{ActionKind, Step};
 use gwatt_syntax::Word;
 use gwatt_syntax::source::Span;
 
+/// M29 of Fanuc's controls, times ten: the tap after it is rigid.
+const RIGID: u16 = 290;
+
 impl Control<'_> {
+    /// Whether canned cycles are those of Fanuc and its relatives.
+    fn motion_survives_cycles(&self) -> bool {
+        let family = self.machine.controller.language.family;
+        family.facts().motion_survives_cycles
+    }
+
     pub(super) fn speed_and_tool(&mut self, run: &mut Run<'_, '_>) {
         self.spindle_mode(run);
         let other = run
@@ -97,6 +106,7 @@ impl Control<'_> {
             self.switch_loads(value);
             self.switches.switch(number);
             self.osp_return(number);
+            run.facts.announces_tap |= number == RIGID && self.motion_survives_cycles();
             if self.moves_of_itself(b'M', number) {
                 if number == 60 {
                     self.load_tool(number, span, run);

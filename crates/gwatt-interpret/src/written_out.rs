@@ -12,6 +12,14 @@ impl Interpreter<'_> {
         self.cycle() != 0
     }
 
+    /// Whether blocks that only name places drill there: by a canned cycle, or by a call after
+    /// each of them (SINUMERIK).
+    #[must_use]
+    pub fn drills_at_places(&self) -> bool {
+        let own = self.control.own.siemens();
+        self.in_cycle() || own.is_some_and(Siemens::calls_after_moves)
+    }
+
     /// The number of the canned cycle that is in force, times ten; 0 without one.
     #[must_use]
     pub fn cycle(&self) -> u16 {

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::Series;
+use super::series::Series;
 use crate::interpret::CalledCycle;
 use crate::pipeline::executor::Line;
 use crate::rewrite::{CallingBlock, Singles, without_modal_call};
@@ -30,7 +30,6 @@ pub(super) fn series(
     series.numbers.insert(number, n_word);
     let place = |place: &_| line.interpreter.place_in_program(place);
     let set_at = match called.set_at {
-        _ if line.key.0 != 0 => Err("it stands in the file of a subprogram"),
         _ if line.block.delete_level > 0 || line.facts.checksum => Err("its block may be skipped"),
         _ if line.facts.compensated => Err("it runs under cutter compensation"),
         None => Ok(None),
@@ -64,7 +63,8 @@ pub(super) fn series(
         );
         lines
     };
-    series.written_out = written_out.map(with_call).map_err(|why| (number, why));
-    series.placed = placed.map(with_call).map_err(|why| (number, why));
+    let refused = |why| (number, why);
+    series.written_out = written_out.map(with_call).map_err(refused).into();
+    series.placed = placed.map(with_call).map_err(refused).into();
     series
 }

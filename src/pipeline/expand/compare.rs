@@ -83,6 +83,10 @@ impl Steps<'_, '_> {
                 return Ok(None);
             };
             self.line = line.key.1;
+            if line.facts.announces_tap {
+                // It stands before each tap whose way is gone before it.
+                continue;
+            }
             let counts = |step: &Step| match step {
                 Step::Move(mv) => mv.length_mm > ROUNDING_MM || mv.kind == MoveKind::Dwell,
                 // The moves themselves show them.

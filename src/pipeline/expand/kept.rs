@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::series::EACH_TIME;
 use crate::diagnostic::Diagnostic;
 use crate::limit::{Allowed, UNTOUCHABLE};
 use crate::source::{Span, lines, split_line_end};
@@ -29,6 +30,20 @@ impl Notes {
         let span = Span::new(0, split_line_end(text).0.len());
         self.list
             .push(Diagnostic::note(NOT_WRITTEN_OUT, message).at(line, span, text));
+    }
+}
+
+/// Says of places at which several cycles drill why their blocks do not take the place of the
+/// calls: `whys` has that by line.
+pub(super) fn say_why_not_in_place(notes: &mut [Diagnostic], whys: &BTreeMap<u64, &str>) {
+    for note in notes
+        .iter_mut()
+        .filter(|note| note.message.ends_with(EACH_TIME))
+    {
+        if let Some(why) = whys.get(&note.line) {
+            let blocks = ", and what keeps its blocks from the place of the call is";
+            note.message = format!("{}{blocks} {why}", note.message);
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Lines, Series};
+use super::series::{Lines, Series};
 use crate::interpret::{Modal, Motion, Step, TWO_OF_A_GROUP};
 use crate::machine::{AxisKind, AxisSet, Lathe, Machine};
 use crate::pipeline::executor::Line;
@@ -39,14 +39,12 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before, machine: &Machine) ->
     if moving.is_empty() {
         return None;
     }
-    let (text, number) = line.key;
+    let (_, number) = line.key;
     let facts = &*line.facts;
     let unknown_point = facts
         .reference
         .filter(|point| !line.interpreter.knows_reference(*point, moving));
-    let written = if text != 0 {
-        Err("it stands in the file of a subprogram")
-    } else if line.block.delete_level > 0 || facts.checksum {
+    let written = if line.block.delete_level > 0 || facts.checksum {
         Err("its block may be skipped")
     } else if facts.fixed == Some(TWO_OF_A_GROUP) {
         Err(TWO_OF_A_GROUP)
@@ -75,10 +73,8 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before, machine: &Machine) ->
             block.write(|place| line.interpreter.place_in_program(place))
         }
     };
-    let lines: Lines = match written {
-        Ok(bytes) => Ok(BTreeMap::from([(number, bytes)])),
-        Err(why) => Err((number, why)),
-    };
+    let mut lines = Lines::default();
+    lines.add(number, written);
     Some(Series {
         stays: STAYS,
         numbers: BTreeMap::from([(number, line.block.number.map(|word| word.value))]),

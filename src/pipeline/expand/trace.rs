@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
-use super::Expanded;
+use super::expanded::Expanded;
 use crate::pipeline::{LimitSummary, Restart, RestartRows, Row, RowSink};
 use crate::source::{Span, lines, split_line_end};
 
@@ -75,7 +75,7 @@ impl Expanded {
     /// Gives a row of the program itself the line of the original.
     pub(in crate::pipeline) fn trace_row(&self, row: &mut Row) {
         row.line = self.origin(row.line);
-        let n_word = self.n_words.get(&row.line).copied();
+        let n_word = self.n_word(row.line);
         row.n_word = n_word.or(row.n_word);
     }
 }

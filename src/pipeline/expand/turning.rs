@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Lines, Series};
+use super::series::{Lines, Series};
 use crate::pipeline::executor::Line;
 use crate::rewrite::{CycleBlock, Singles, contour_as_comment};
 use crate::source::lines;
@@ -105,12 +105,12 @@ pub(super) fn series(
         // What takes a contour away needs the finishing cycle that reads it written out.
         numbers.extend((first..=last).map(|line| (line, None)));
     }
-    let placed = Err((number, *written.as_ref().err().unwrap_or(&FOLLOW)));
-    let written_out: Lines = written.map_err(|why| (number, why));
+    let mut placed = Lines::default();
+    placed.add(number, Err(*written.as_ref().err().unwrap_or(&FOLLOW)));
     Series {
         stays: STAYS,
         numbers,
-        written_out,
+        written_out: written.map_err(|why| (number, why)).into(),
         placed,
         ..Series::default()
     }
@@ -139,16 +139,16 @@ fn write(
             if first <= number {
                 return Err("its contour stands before it");
             }
-            let mut lines =
-                BTreeMap::from([(number, singles.write_out(cycle, &held, false, place)?)]);
+            let written = singles.write_out(cycle, &held, false, place)?;
+            let mut lines = BTreeMap::from([(number, written.around(&[]))]);
             // What stands between them was jumped over too.
             let jumped = (number + 1..).zip(text(number + 1, last));
             lines.extend(jumped.filter_map(|(line, text)| Some((line, contour_as_comment(text)?))));
             Ok(lines)
         }
-        (_, None) => Ok(BTreeMap::from([(
-            number,
-            singles.write_out(cycle, &held, false, place)?,
-        )])),
+        (_, None) => {
+            let written = singles.write_out(cycle, &held, false, place)?;
+            Ok(BTreeMap::from([(number, written.around(&[]))]))
+        }
     }
 }

@@ -1,12 +1,10 @@
 //! Canned cycles of the programs of a set, written in another way where they keep it from
 //! fitting. Those in files of subprograms stay as they are.
 
-use std::collections::BTreeMap;
-
 use super::discover::Found;
 use super::rounds::Job;
 use super::{SetFailure, SetSummary};
-use crate::pipeline::expand::{NOT_WRITTEN_OUT, Way, expand, explain, in_fixed_blocks};
+use crate::pipeline::expand::{Asked, NOT_WRITTEN_OUT, Way, expand, explain, in_fixed_blocks};
 use crate::pipeline::{Options, RestartRows, Summary};
 
 /// Limits a set as it stands, or else with the cycles of its programs written in another way.
@@ -18,7 +16,7 @@ pub(super) fn limit(
 ) -> Result<SetSummary, SetFailure> {
     let mut set = job.limit(rows)?;
     let mut originals: Vec<Summary> = set.programs.iter().map(|it| it.before.clone()).collect();
-    let mut wanted: Vec<BTreeMap<u64, Way>> = vec![BTreeMap::new(); originals.len()];
+    let mut wanted: Vec<Asked> = vec![Asked::default(); originals.len()];
     for way in [Way::Placed, Way::WrittenOut] {
         if set.certified() || way == Way::WrittenOut && !job.how.allowed.expand {
             break;
@@ -31,8 +29,7 @@ pub(super) fn limit(
             }
             let all = summary.reasons.len() >= Summary::KEPT;
             if !summary.certified && in_fixed_blocks(summary) {
-                let own = summary.reasons.iter().filter(|it| it.file.is_none());
-                wanted.extend(own.map(|reason| (reason.line, way)));
+                wanted.extend(&summary.reasons, way);
             }
             if wanted.is_empty() {
                 continue;
@@ -44,15 +41,9 @@ pub(super) fn limit(
             ) else {
                 continue;
             };
-            let of = |line| {
-                if all {
-                    Some(way)
-                } else {
-                    wanted.get(&line).copied()
-                }
-            };
+            wanted.all(all.then_some(way));
             let (expanded, notes) =
-                expand(&program.text, job.machine, ways, of).map_err(SetFailure::of(number))?;
+                expand(&program.text, job.machine, ways, wanted).map_err(SetFailure::of(number))?;
             before.notes.retain(|note| note.rule != NOT_WRITTEN_OUT);
             before.notes.extend(notes);
             if let Some(place) = next.expanded.get_mut(number) {

@@ -98,7 +98,10 @@ impl Rewriter<'_> {
     /// meaning in force and this one needs none of its own.
     fn feed_mode_within(&mut self, view: &BlockView<'_>) {
         let facts = view.facts;
-        let shows = facts.boundary || facts.stop_word.is_some() || facts.selects_tool;
+        let shows = facts.boundary
+            || facts.stop_word.is_some()
+            || facts.selects_tool
+            || facts.announces_tap;
         let needed = facts.uses_motion || facts.feed_word.is_some() || shows || self.states;
         if apart(view) || !needed {
             return;

@@ -3,6 +3,7 @@
 use super::{Flow, FlowError};
 use crate::control::Effects;
 use crate::execute::Interpreter;
+use crate::facts::Passage;
 use crate::jump::Transfer;
 use gwatt_motion::Step;
 use gwatt_syntax::Block;
@@ -23,6 +24,7 @@ impl Flow {
         // What is wrong in a loop is wrong in each of its runs.
         let mut stuck = effects.diagnostics.errors > 0 && run > 1;
         let mut transfer = interpreter.transfer();
+        effects.facts.passage = transfer.as_ref().map_or(Passage::None, Transfer::passage);
         let mut done = Ok(());
         let cycle = match &mut transfer {
             Some(Transfer::Contour(contour)) => {

@@ -195,6 +195,12 @@ impl Flow {
         self.now
     }
 
+    /// How many calls and repeated sections are open.
+    #[must_use]
+    pub fn depth(&self) -> usize {
+        self.calls.len() + self.sections.len()
+    }
+
     /// Names of the files of subprograms, by number from 1 on.
     #[must_use]
     pub fn files(&self) -> &[String] {

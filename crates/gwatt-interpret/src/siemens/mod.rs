@@ -306,6 +306,11 @@ impl Siemens {
         self.uncalled
     }
 
+    /// Whether a call follows each block that moves (MCALL).
+    pub(super) fn calls_after_moves(&self) -> bool {
+        self.modal_call.is_some()
+    }
+
     /// Whether words of X are diameters (DIAMON, DIAM90).
     pub(super) fn in_diameters(&self) -> bool {
         self.diameter

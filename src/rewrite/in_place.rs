@@ -1,0 +1,168 @@
+//! Blocks of a subprogram, or of a section that is repeated, as they stand in place of the call.
+//!
+//! Input: a line that the call runs, and the call itself. Output: the line as it does the same
+//! there, and the call as a comment. Whether all of it does the same is checked by the pipeline,
+//! which reads it again.
+
+use super::number::with_blanks;
+use crate::edit::{Edit, apply};
+use crate::interpret::Passage;
+use crate::source::{Span, split_line_end};
+use crate::syntax::{Block, Word};
+
+/// A block, and what has to be known of it.
+#[derive(Debug, Clone, Copy)]
+pub struct CalledBlock<'a> {
+    /// The line, line end included.
+    pub text: &'a [u8],
+    /// Its words.
+    pub block: &'a Block,
+    /// Its part in the order of execution.
+    pub passage: Passage,
+    /// Comments begin with `;` and reach to the end of their line.
+    pub comment_to_line_end: bool,
+}
+
+impl CalledBlock<'_> {
+    /// The block without its number, its label and its part in the order of execution; `None`
+    /// where nothing of it is left to do.
+    ///
+    /// # Errors
+    /// Why it cannot stand in another place.
+    pub fn in_place(&self) -> Result<Option<Vec<u8>>, &'static str> {
+        let (text, line_end) = split_line_end(self.text);
+        let code = &text[..self.comment()];
+        match self.passage {
+            Passage::Other => return Err("a branch, a loop or a macro"),
+            Passage::Call if self.only_passes() => return Ok(None),
+            Passage::Call => return Err("a call with other words in its block"),
+            Passage::None | Passage::Edge => {}
+        }
+        let mut edits = Vec::new();
+        let mut words = self.block.words.iter().peekable();
+        let mut left = words.peek().is_some();
+        for word in words {
+            if word.letter == b'O' || is_return(word) {
+                edits.push(Edit::replace(with_blanks(text, word.span), ""));
+                left = self.block.words.iter().any(|it| !is_edge(it));
+            }
+        }
+        if self.block.issues.is_empty() && !left {
+            return Ok(None);
+        }
+        // What is worked out may be worked out from values of the subprogram itself.
+        if code.iter().any(|byte| b"#=[$<\"".contains(byte)) {
+            return Err("values that are worked out");
+        }
+        let mut begin = self.block.number.map_or(0, |word| word.span.end as usize);
+        begin = label_end(code, begin).unwrap_or(begin);
+        let statement = code.get(begin..).unwrap_or_default().trim_ascii();
+        if statement.is_empty() || begins_subprogram(statement) {
+            return Ok(None);
+        }
+        if self.passage == Passage::Edge && !self.block.issues.is_empty() {
+            return match self.block.words.is_empty() {
+                true => Ok(None),
+                false => Err("a return with other words in its block"),
+            };
+        }
+        if let Some(number) = self.block.number {
+            let from = number.span.start as usize;
+            edits.push(Edit::replace(Span::new(from, begin), ""));
+        } else if begin > 0 {
+            edits.push(Edit::replace(Span::new(0, begin), ""));
+        }
+        let mut out = Vec::with_capacity(text.len() + 2);
+        if !apply(text, &mut edits, &mut out) {
+            return Err("words that overlap");
+        }
+        let blanks = out.len() - out.trim_ascii_start().len();
+        out.drain(..blanks);
+        out.extend_from_slice(if line_end.is_empty() { b"\n" } else { line_end });
+        Ok(Some(out))
+    }
+
+    /// The call as a comment, after its number.
+    ///
+    /// # Errors
+    /// Why the call has to stay.
+    pub fn as_comment(&self) -> Result<Vec<u8>, &'static str> {
+        if self.block.delete_level > 0 {
+            return Err("its call may be skipped");
+        }
+        if !self.only_passes() {
+            return Err("the block of its call does more than call it");
+        }
+        let (text, line_end) = split_line_end(self.text);
+        let begin = self.block.number.map_or(0, |word| word.span.end as usize);
+        let (call, rest) = (text.get(begin..self.comment()), &text[self.comment()..]);
+        let call = call.unwrap_or_default().trim_ascii();
+        if call.iter().any(|byte| b"()".contains(byte)) && !self.comment_to_line_end {
+            return Err("its call has parentheses");
+        }
+        let mut out = text.get(..begin).unwrap_or_default().to_vec();
+        if begin > 0 {
+            out.push(b' ');
+        }
+        let [open, close]: [&[u8]; 2] = if self.comment_to_line_end {
+            [b"; ", b" written out"]
+        } else {
+            [b"(", b" written out)"]
+        };
+        out.extend_from_slice(open);
+        out.extend_from_slice(call);
+        out.extend_from_slice(close);
+        if !rest.is_empty() {
+            out.push(b' ');
+            out.extend_from_slice(rest);
+        }
+        out.extend_from_slice(if line_end.is_empty() { b"\n" } else { line_end });
+        Ok(out)
+    }
+
+    /// Where its first comment begins, or its end.
+    fn comment(&self) -> usize {
+        let (text, _) = split_line_end(self.text);
+        let opens = |byte: &u8| *byte == b';' || *byte == b'(' && !self.comment_to_line_end;
+        text.iter().position(opens).unwrap_or(text.len())
+    }
+
+    /// Whether its words say nothing but where the program goes on.
+    fn only_passes(&self) -> bool {
+        self.block.words.iter().all(is_edge)
+    }
+}
+
+/// Words of calls and returns, and their values.
+fn is_edge(word: &Word) -> bool {
+    match word.letter {
+        b'M' => is_return(word) || [97.0, 98.0, 198.0].contains(&word.value),
+        letter => b"OPLHQK".contains(&letter),
+    }
+}
+
+fn is_return(word: &Word) -> bool {
+    word.letter == b'M' && [17.0, 99.0].contains(&word.value)
+}
+
+/// Where a label ends that stands at this place: a name and `:`.
+fn label_end(code: &[u8], at: usize) -> Option<usize> {
+    let rest = code.get(at..)?;
+    let colon = rest.iter().position(|byte| *byte == b':')?;
+    let name = rest[..colon].trim_ascii();
+    let mut bytes = name.iter();
+    let begins = bytes.next()?;
+    let named = begins.is_ascii_alphabetic() || *begins == b'_';
+    let all = bytes.all(|byte| byte.is_ascii_alphanumeric() || *byte == b'_');
+    (named && all).then_some(at + colon + 1)
+}
+
+/// `PROC NAME`, which does no more than begin a subprogram.
+fn begins_subprogram(statement: &[u8]) -> bool {
+    let text = statement.to_ascii_uppercase();
+    let name = text.strip_prefix(b"PROC ").map(<[u8]>::trim_ascii);
+    name.is_some_and(|name| {
+        let mut bytes = name.iter();
+        bytes.all(|byte| byte.is_ascii_alphanumeric() || *byte == b'_')
+    })
+}
