@@ -30,54 +30,50 @@ impl CalledBlock<'_> {
     /// # Errors
     /// Why it cannot stand in another place.
     pub fn in_place(&self) -> Result<Option<Vec<u8>>, &'static str> {
-        let (text, line_end) = split_line_end(self.text);
-        let code = &text[..self.comment()];
+        let Block { words, issues, .. } = self.block;
         match self.passage {
             Passage::Other => return Err("a branch, a loop or a macro"),
             Passage::Call if self.only_passes() => return Ok(None),
             Passage::Call => return Err("a call with other words in its block"),
+            Passage::Edge if !issues.is_empty() && !words.is_empty() => {
+                return Err("a return with other words in its block");
+            }
             Passage::None | Passage::Edge => {}
         }
-        let mut edits = Vec::new();
-        let mut words = self.block.words.iter().peekable();
-        let mut left = words.peek().is_some();
-        for word in words {
-            if word.letter == b'O' || is_return(word) {
-                edits.push(Edit::replace(with_blanks(text, word.span), ""));
-                left = self.block.words.iter().any(|it| !is_edge(it));
-            }
-        }
-        if self.block.issues.is_empty() && !left {
+        let (text, line_end) = split_line_end(self.text);
+        let code = &text[..self.comment()];
+        let number = self.block.number.map(|word| word.span);
+        let begin = number.map_or(0, |span| span.end as usize);
+        let label = label(code, begin);
+        let begin = label.map_or(begin, |span| span.end as usize);
+        let statement = code.get(begin..).unwrap_or_default().trim_ascii();
+        let passes = issues.is_empty()
+            || self.passage == Passage::Edge
+            || statement.is_empty()
+            || begins_subprogram(statement);
+        if passes && self.only_passes() {
             return Ok(None);
         }
         // What is worked out may be worked out from values of the subprogram itself.
         if code.iter().any(|byte| b"#=[$<\"".contains(byte)) {
             return Err("values that are worked out");
         }
-        let mut begin = self.block.number.map_or(0, |word| word.span.end as usize);
-        begin = label_end(code, begin).unwrap_or(begin);
-        let statement = code.get(begin..).unwrap_or_default().trim_ascii();
-        if statement.is_empty() || begins_subprogram(statement) {
-            return Ok(None);
-        }
-        if self.passage == Passage::Edge && !self.block.issues.is_empty() {
-            return match self.block.words.is_empty() {
-                true => Ok(None),
-                false => Err("a return with other words in its block"),
-            };
-        }
-        if let Some(number) = self.block.number {
-            let from = number.span.start as usize;
-            edits.push(Edit::replace(Span::new(from, begin), ""));
-        } else if begin > 0 {
-            edits.push(Edit::replace(Span::new(0, begin), ""));
-        }
+        let edges = words
+            .iter()
+            .filter(|word| word.letter == b'O' || is_return(word));
+        let spans = number.into_iter().chain(label);
+        let spans = spans.chain(edges.map(|word| word.span));
+        let mut edits: Vec<_> = spans
+            .map(|span| Edit::replace(with_blanks(text, span), ""))
+            .collect();
         let mut out = Vec::with_capacity(text.len() + 2);
         if !apply(text, &mut edits, &mut out) {
             return Err("words that overlap");
         }
-        let blanks = out.len() - out.trim_ascii_start().len();
-        out.drain(..blanks);
+        if number.is_some() || label.is_some() {
+            let blanks = out.len() - out.trim_ascii_start().len();
+            out.drain(..blanks);
+        }
         out.extend_from_slice(if line_end.is_empty() { b"\n" } else { line_end });
         Ok(Some(out))
     }
@@ -145,16 +141,17 @@ fn is_return(word: &Word) -> bool {
     word.letter == b'M' && [17.0, 99.0].contains(&word.value)
 }
 
-/// Where a label ends that stands at this place: a name and `:`.
-fn label_end(code: &[u8], at: usize) -> Option<usize> {
+/// A label that stands at this place: a name and `:`.
+fn label(code: &[u8], at: usize) -> Option<Span> {
     let rest = code.get(at..)?;
     let colon = rest.iter().position(|byte| *byte == b':')?;
-    let name = rest[..colon].trim_ascii();
-    let mut bytes = name.iter();
+    let name = rest[..colon].trim_ascii_start();
+    let mut bytes = name.trim_ascii_end().iter();
     let begins = bytes.next()?;
     let named = begins.is_ascii_alphabetic() || *begins == b'_';
     let all = bytes.all(|byte| byte.is_ascii_alphanumeric() || *byte == b'_');
-    (named && all).then_some(at + colon + 1)
+    let start = at + colon - name.len();
+    (named && all).then(|| Span::new(start, at + colon + 1))
 }
 
 /// `PROC NAME`, which does no more than begin a subprogram.

@@ -156,7 +156,7 @@ fn a_subroutine_of_linuxcnc() {
     ");
 }
 
-/// ShopMill writes its positions as a section with a label.
+/// `ShopMill` writes its positions as a section with a label.
 #[test]
 fn a_section_of_sinumerik_that_is_repeated() {
     let program = "G17 G54 G90 G60 F200\nG0 X0 Y0 Z50\nN30 MCALL CYCLE81(50,0,2,-10)\n\

@@ -5,6 +5,9 @@ use std::collections::BTreeMap;
 /// Why a line stays as it is.
 pub(super) type Refused = (u64, &'static str);
 
+/// What the lines of a series become that change; or why the series stays.
+pub(super) type Settled = Result<BTreeMap<u64, Vec<u8>>, Refused>;
+
 /// What lines of a series become, or why they stay.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lines(BTreeMap<u64, Result<Vec<u8>, &'static str>>);
@@ -21,8 +24,8 @@ impl Lines {
     }
 }
 
-impl From<Result<BTreeMap<u64, Vec<u8>>, Refused>> for Lines {
-    fn from(lines: Result<BTreeMap<u64, Vec<u8>>, Refused>) -> Self {
+impl From<Settled> for Lines {
+    fn from(lines: Settled) -> Self {
         Self(match lines {
             Ok(lines) => lines
                 .into_iter()
@@ -75,10 +78,26 @@ impl Series {
         self.placed.add(line, Err(why));
     }
 
+    /// All of it stays as it is.
+    pub(super) fn refuse_all(&mut self, why: &'static str) {
+        (self.placed, self.written_out) = (Lines::default(), Lines::default());
+        self.restated.clear();
+        if let Some(first) = self.numbers.keys().next().copied() {
+            self.refuse(first, why);
+        }
+    }
+
+    /// The cycle of its blocks so far has to stay in force.
+    pub(super) fn keep_cycle(&mut self, why: &'static str) {
+        for line in self.numbers.keys() {
+            self.written_out.add(*line, Err(why));
+        }
+    }
+
     /// Takes a block as it stays, which is the same in all its runs.
-    pub(super) fn restate(&mut self, line: u64, bytes: Option<Vec<u8>>) {
-        let known = self.restated.entry(line).or_insert_with(|| bytes.clone());
-        if *known != bytes {
+    pub(super) fn restate(&mut self, line: u64, bytes: Option<&Vec<u8>>) {
+        let known = self.restated.entry(line).or_insert_with(|| bytes.cloned());
+        if known.as_ref() != bytes {
             *known = None;
         }
     }
@@ -101,7 +120,7 @@ impl Series {
             }
         }
         for (number, bytes) in other.restated {
-            self.restate(number, bytes);
+            self.restate(number, bytes.as_ref());
         }
     }
 
@@ -111,10 +130,7 @@ impl Series {
     ///
     /// # Errors
     /// Why the series stays as it is.
-    pub(super) fn settle(
-        &self,
-        all_moves: bool,
-    ) -> (Result<BTreeMap<u64, Vec<u8>>, Refused>, Vec<Refused>) {
+    pub(super) fn settle(&self, all_moves: bool) -> (Settled, Vec<Refused>) {
         let mut refused = Vec::new();
         let mut lines = BTreeMap::new();
         for number in self.numbers.keys() {

@@ -40,9 +40,7 @@ impl Survey {
             }
             // Places that are written with a point would be others than the program's.
             for series in survey.series.iter_mut().filter(|_| assumed) {
-                if let Some(line) = series.numbers.keys().next().copied() {
-                    series.refuse(line, WITHOUT_POINT);
-                }
+                series.refuse_all(WITHOUT_POINT);
             }
         }
         Ok(survey)
@@ -112,7 +110,8 @@ fn take_in(
     series.numbers.insert(number, n_word);
     let again = singles.restated(cycle, &series.held, to_r);
     let again = again.filter(|_| !line.facts.checksum);
-    series.restate(number, again.map(|again| Rigid::before(rigid, again)));
+    let again = again.map(|again| Rigid::before(rigid, again));
+    series.restate(number, again.as_ref());
     if let Some(why) = fixed {
         return series.refuse(number, why);
     }
@@ -270,10 +269,8 @@ impl Surveyor<'_, '_, '_> {
                 series.refuse(set_at, IN_FILE);
                 close(&mut Some(series), &mut self.survey.series);
             }
-            if let Some(series) = &mut self.open
-                && let Some(first) = series.numbers.keys().next().copied()
-            {
-                series.refuse(first, IN_FILE);
+            if let Some(series) = &mut self.open {
+                series.keep_cycle(IN_FILE);
             }
         } else if !interpreter.in_cycle() {
             self.tapping.pass(line, self.open.is_some());
