@@ -12,7 +12,7 @@ use super::hole::Placed;
 use super::number::{decimal, rounded, rounded_finely, with_blanks};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Action, ActionKind, Corner, FeedMode, Modal, Motion, Move, MoveKind, Step};
-use crate::machine::{ALL_AXES, AXES, AxisValues, Language, Lathe, Machine};
+use crate::machine::{ALL_AXES, AXES, AxisId, AxisValues, Language, Lathe, Machine};
 use crate::source::{Span, split_line_end};
 use crate::syntax::{Block, Word};
 use crate::units::SECONDS_PER_MINUTE;
@@ -282,12 +282,27 @@ impl<'m> Singles<'m> {
         };
         let end = place(&mv.end).map(lines.round);
         let mut words = word.to_owned();
+        // The place of a hole is said as the block says it, wherever the one before it is: it
+        // may be skipped.
+        let [first, second, _] = of.modal.plane;
+        let rapid = mv.kind == MoveKind::Rapid && of.modal.absolute;
+        let across = rapid
+            && [first, second]
+                .iter()
+                .any(|axis| lines.at[*axis] != end[*axis]);
+        let named = |axis: AxisId| {
+            let in_plane = [first, second].contains(&(axis as usize));
+            let mut all = of.block.words.iter();
+            in_plane && all.any(|word| word.letter == axis.letter())
+        };
+        let mut moves = false;
         for axis in ALL_AXES {
             let index = axis as usize;
             let (from, to) = (lines.at[index], end[index]);
-            if from == to {
+            if from == to && !(across && named(axis)) {
                 continue;
             }
+            moves |= from != to;
             let value = if of.modal.absolute {
                 to
             } else {
@@ -307,7 +322,7 @@ impl<'m> Singles<'m> {
                 let _ = write!(words, " {}{}", char::from(*letter), decimal(offset, true));
             }
         }
-        if words.len() == word.len() {
+        if !moves && mv.arc.is_none() {
             return Ok(());
         }
         // On a lathe all moves of a cycle have the F in force, but for the way out of a bore.

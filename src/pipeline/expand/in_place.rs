@@ -117,10 +117,10 @@ pub(super) struct Call {
 }
 
 impl Call {
-    /// Whether it runs one of the lines that are asked for.
-    pub(super) fn runs(&self, asked: &Asked) -> bool {
-        let mut runs = self.runs.iter();
-        runs.any(|(file, line)| asked.way(file.as_deref(), *line).is_some())
+    /// Whether it runs one of the lines that are asked for, or of these.
+    pub(super) fn runs(&self, asked: &Asked, others: &BTreeSet<u64>) -> bool {
+        let is_asked = |(file, line): &Place| asked.way(file.as_deref(), *line).is_some();
+        self.runs.iter().any(is_asked) || self.lines_here().any(|line| others.contains(&line))
     }
 
     /// The lines of the program itself that it runs.

@@ -59,7 +59,10 @@ pub(super) fn expand(
     let mut whys = BTreeMap::new();
     if survey.shares_places(asked) {
         let calls = in_place::calls(program, machine, paths)?;
-        let wanted = calls.iter().filter(|(_, call)| call.runs(asked));
+        let differing = survey.lines_that_differ(asked);
+        let wanted = calls
+            .iter()
+            .filter(|(_, call)| call.runs(asked, &differing));
         let mut chosen = BTreeMap::new();
         for (line, call) in wanted {
             match &call.lines {

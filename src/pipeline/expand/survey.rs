@@ -49,12 +49,20 @@ impl Survey {
     /// Whether places that are asked for stand in a file, or have another cycle each time.
     pub(super) fn shares_places(&self, asked: &Asked) -> bool {
         let mut in_files = self.in_files.iter();
-        let mut series = self.series.iter();
-        let asks = |series: &Series| {
+        in_files.any(|(file, line)| asked.way(Some(file), *line).is_some())
+            || !self.lines_that_differ(asked).is_empty()
+    }
+
+    /// The lines of series that are asked for and do something else each time they run.
+    pub(super) fn lines_that_differ(&self, asked: &Asked) -> BTreeSet<u64> {
+        let asks = |series: &&Series| {
             let mut lines = series.numbers.keys();
             series.differs() && lines.any(|line| asked.way(None, *line).is_some())
         };
-        in_files.any(|(file, line)| asked.way(Some(file), *line).is_some()) || series.any(asks)
+        let series = self.series.iter().filter(asks);
+        series
+            .flat_map(|series| series.numbers.keys().copied())
+            .collect()
     }
 }
 
