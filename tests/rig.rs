@@ -51,6 +51,7 @@ pub(crate) fn machine(axes: &[Axis]) -> Machine {
         name: "rig".into(),
         controller: controller(),
         kinematics: Kinematics::Cartesian,
+        further_offsets: std::collections::BTreeMap::new(),
         points: [[None; AXES]; 2],
         axes: slots,
         axis_set,

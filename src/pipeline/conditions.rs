@@ -124,7 +124,7 @@ fn place_conditions(machine: &Machine, options: &Options) -> impl Iterator<Item 
     let axes = || machine.axes.iter().flatten();
     let sources = [
         (
-            machine.offsets.iter().any(Option::is_some),
+            machine.offsets.iter().any(Option::is_some) || !machine.further_offsets.is_empty(),
             "work offsets are those under [offsets] of the machine file",
         ),
         (

@@ -92,8 +92,29 @@ fn what_is_not_known_is_asked_for() {
     // G55 is known, G56 is not.
     let other = |word: &str| known.limit(&program.replace("G54", word), "--tool-table tools.tbl");
     assert_eq!(other("G55").0, 0);
-    let (code, _, errors) = other("G56");
-    assert!(code == 1 && errors.contains(offset), "{errors}");
+    for word in ["G56", "G154 P1", "G154 P3"] {
+        let (code, _, errors) = other(word);
+        assert!(code == 1 && errors.contains(offset), "{errors}");
+    }
+}
+
+/// Further systems, of which a fixture with many parts has one each.
+#[test]
+fn further_offsets_are_known_too() {
+    let program =
+        "G21 G90 G154 P20\nG0 Z50.\nX400.\nG91 G28 Z0\nG90 G154 P1 G0 X10.\nG28 X10.\nM30\n";
+    let places = "[offsets]\nG154 = { P20 = { X = -450.5, Z = -300 }, P1 = { X = -20 } }\n";
+    for (controller, word, table) in [("haas", "G154", "G154"), ("fanuc", "G54.1", "\"G54.1\"")] {
+        let shop = shop(
+            controller,
+            &places.replace("G154", table),
+            "reference_mm = 0",
+        );
+        let program = program.replace("G154", word);
+        let text = shop.limited(&program, "--allow feed");
+        assert_eq!(ends(&shop, &program, ""), ends(&shop, &text, ""));
+        assert!(text.contains("Z300. F"), "{text}");
+    }
 }
 
 #[test]

@@ -354,4 +354,13 @@ fn offsets_of_axes_and_systems_that_are_not_there() {
     ));
     assert!(found.contains("the machine has no axis Y"), "{found}");
     assert!(found.contains("`Q`") && found.contains("`G60`"), "{found}");
+    for name in ["P0", "P301", "1", "P01 = { X = 1 }, P1"] {
+        let found = findings(&with(&format!(
+            "[offsets]\nG154 = {{ {name} = {{ X = 1 }} }}"
+        )));
+        assert!(
+            found.contains("is no number of a further work offset, or is given twice"),
+            "{name}: {found}"
+        );
+    }
 }

@@ -40,7 +40,7 @@ pub(super) struct Offsets {
     stored: Box<[f64; COUNT]>,
     /// Which of them are known, and not taken as 0.
     has_value: [bool; COUNT],
-    further: BTreeMap<u16, AxisValues>,
+    further: BTreeMap<u16, Further>,
     /// Millimetres in the machine's own unit.
     native_mm: f64,
     linear: AxisSet,
@@ -61,6 +61,14 @@ pub(super) struct Offsets {
     pub(super) known: bool,
     /// Systems whose offsets the machine file gives, as bits.
     given: u16,
+}
+
+/// The offset of a further system.
+#[derive(Debug, Clone, Default, PartialEq)]
+struct Further {
+    origin: AxisValues,
+    /// Axes of which it is known, and not taken as 0.
+    known: AxisSet,
 }
 
 /// First parameter of a work coordinate system.
@@ -108,6 +116,11 @@ impl Offsets {
                 offsets.set_origin_of(system, axis, *value_mm);
             }
             offsets.given |= 1 << system;
+        }
+        for (number, origin) in &machine.further_offsets {
+            for (axis, value_mm) in origin.iter().enumerate() {
+                offsets.set_origin_of(FURTHER + number, axis, *value_mm);
+            }
         }
         for (first, places) in REFERENCE.into_iter().zip(&machine.points) {
             for (axis, place) in places.iter().enumerate() {
@@ -206,7 +219,8 @@ impl Offsets {
         if (1..=SYSTEMS).contains(&system) {
             self.axes_from(first_of(system))
         } else {
-            self.further.get(&system).copied().unwrap_or_default()
+            let further = self.further.get(&system);
+            further.map_or([0.0; AXES], |further| further.origin)
         }
     }
 
@@ -231,7 +245,9 @@ impl Offsets {
         if (1..=SYSTEMS).contains(&system) {
             self.store_axis(first_of(system), axis, value_mm);
         } else if (FURTHER..=FURTHER + FURTHER_MAX).contains(&system) && axis < AXES {
-            self.further.entry(system).or_insert([0.0; AXES])[axis] = value_mm;
+            let further = self.further.entry(system).or_default();
+            further.origin[axis] = value_mm;
+            further.known.insert(axis);
         }
     }
 
@@ -245,13 +261,11 @@ impl Offsets {
         }
     }
 
-    /// Whether the offset of the system in force is known, not taken as 0. Of further ones
-    /// nobody says anything.
+    /// Whether the offset of the system in force is known, not taken as 0.
     pub(super) fn is_known(&self) -> bool {
-        let first = first_of(self.system.min(SYSTEMS));
-        let has = |axis| self.known_from(first, axis).is_some();
-        !self.is_further()
-            && (self.known || self.given & 1 << self.system != 0 || (0..PARAMETER_AXES).any(has))
+        let has = |axis| self.is_origin_known(self.system, axis);
+        let given = self.system <= SYSTEMS && (self.known || self.given & 1 << self.system != 0);
+        given || (0..AXES).any(has)
     }
 
     /// The same for one axis, whose offset the program may have set.
@@ -261,8 +275,11 @@ impl Offsets {
 
     /// Whether the origin of a system is known along an axis.
     pub(super) fn is_origin_known(&self, system: u16, axis: usize) -> bool {
-        let stored = (1..=SYSTEMS).contains(&system);
-        stored && self.known_from(first_of(system), axis).is_some()
+        if (1..=SYSTEMS).contains(&system) {
+            return self.known_from(first_of(system), axis).is_some();
+        }
+        let further = self.further.get(&system);
+        further.is_some_and(|further| further.known.contains(axis))
     }
 
     /// The origin of a system along an axis rests on what is not known.
@@ -272,12 +289,9 @@ impl Offsets {
             if let Some(has_value) = self.has_value.get_mut(index) {
                 *has_value = false;
             }
+        } else if let Some(further) = self.further.get_mut(&system) {
+            further.known.0 &= !(1 << axis);
         }
-    }
-
-    /// Whether a further system is in force: G54.1, G154.
-    pub(super) fn is_further(&self) -> bool {
-        self.system > SYSTEMS
     }
 
     /// Takes over what is stored for the system in force.

@@ -96,12 +96,6 @@ impl Interpreter<'_> {
         if control.tools.guessed.is_some() && moving.contains(AxisId::Z as usize) {
             return Some("the length of the tool is not known: give it with --tool-table");
         }
-        if control.position.offsets().is_further() {
-            return Some(
-                "the work offset is a further one, which the machine file has no field for: use \
-                 G54 to G59 there",
-            );
-        }
         let offsets = control.position.offsets();
         let known = moving.iter().all(|axis| offsets.is_known_of(axis));
         (!known).then_some(

@@ -1,5 +1,7 @@
 //! The validated machine: what the rest of gwatt reads.
 
+use std::collections::BTreeMap;
+
 use super::axis::{AXES, Axis, AxisId, AxisSet, AxisValues};
 use super::controller::{Controller, PathMode, RapidPath, SpindleWait};
 use super::response::Responses;
@@ -37,6 +39,8 @@ pub struct Machine {
     /// Work offsets that the control keeps, by the number of the system (G54 is 1, G59.3 is
     /// 9); `None` where none are given. Machine coordinates of its zero.
     pub offsets: [Option<AxisValues>; 9],
+    /// The same of further systems (G54.1, G154), by their P.
+    pub further_offsets: BTreeMap<u16, AxisValues>,
     /// Where G28 and G30 lead, by axis, in machine coordinates, on controls that keep these
     /// points among their parameters; `None` where it is not given.
     pub points: [[Option<f64>; AXES]; 2],

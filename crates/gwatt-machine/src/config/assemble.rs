@@ -79,7 +79,7 @@ pub(crate) fn machine(
         .and_then(|table| spindle::spindle(findings, table, &converters, &controller));
     let tools = tool::tools(findings, file);
     let offsets = file.offsets.as_ref().map(|table| &table.value);
-    let (offsets, points) = offsets::all(findings, offsets, axis_set, &controller);
+    let places = offsets::all(findings, offsets, axis_set, &controller);
     let kinematics = kinematics::take(findings, file, &axes, &force_curves, &converters);
     let machine = Machine {
         name: file.name.as_ref()?.value.clone(),
@@ -95,8 +95,9 @@ pub(crate) fn machine(
         spindle,
         tools,
         loads,
-        offsets,
-        points,
+        offsets: places.offsets,
+        further_offsets: places.further_offsets,
+        points: places.points,
         presets: preset::presets(findings, file, &axes, axis_set),
         limits,
     };

@@ -1,5 +1,7 @@
 //! Work offsets in the machine file.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -40,6 +42,12 @@ pub(crate) struct OffsetsTable {
     /// Of G59.3.
     #[serde(rename = "G59.3")]
     g59_3: Option<PerAxis<Number>>,
+    /// Of further systems (G54.1 P1), by `P1` to `P300`.
+    #[serde(rename = "G54.1")]
+    g54_1: Option<At<BTreeMap<String, PerAxis<Number>>>>,
+    /// The same on Haas (G154 P1).
+    #[serde(rename = "G154")]
+    g154: Option<At<BTreeMap<String, PerAxis<Number>>>>,
     /// Where G28 leads, on controls that keep this point among their parameters (grbl's `$#`,
     /// `LinuxCNC`'s #5161), in machine coordinates; not known for axes that are not named.
     #[serde(rename = "G28")]
@@ -67,8 +75,16 @@ impl OffsetsTable {
     }
 }
 
-/// Machine coordinates of each system's zero; where G28 and G30 lead, by axis.
-type Places = ([Option<AxisValues>; 9], [[Option<f64>; AXES]; 2]);
+/// What the table gives.
+#[derive(Debug, Default)]
+pub(crate) struct Places {
+    /// Machine coordinates of the zeros of G54 to G59.3.
+    pub(crate) offsets: [Option<AxisValues>; 9],
+    /// The same of further systems, by their P.
+    pub(crate) further_offsets: BTreeMap<u16, AxisValues>,
+    /// Where G28 and G30 lead, by axis.
+    pub(crate) points: [[Option<f64>; AXES]; 2],
+}
 
 /// What the table gives, if there is one.
 pub(crate) fn all(
@@ -77,31 +93,56 @@ pub(crate) fn all(
     axes: AxisSet,
     controller: &Controller,
 ) -> Places {
-    table.map_or(([None; 9], [[None; AXES]; 2]), |table| {
-        (
-            offsets(findings, table, axes),
-            points(findings, table, axes, controller),
-        )
+    table.map_or_else(Places::default, |table| Places {
+        offsets: table
+            .systems()
+            .map(|system| Some(origin(findings, system?, axes))),
+        further_offsets: further(findings, table, axes),
+        points: points(findings, table, axes, controller),
     })
 }
 
-/// Work offsets by the number of the system.
-fn offsets(
+/// The zero of a system.
+fn origin(findings: &mut Findings<'_>, system: &PerAxis<Number>, axes: AxisSet) -> AxisValues {
+    let mut origin = [0.0; AXES];
+    for (axis, number) in system.iter() {
+        if !axes.contains(axis as usize) {
+            let message = format!("the machine has no axis {}", axis.letter() as char);
+            findings.error("machine-offsets", &number.span, message, None);
+        }
+        origin[axis as usize] = number.value;
+    }
+    origin
+}
+
+/// Most further systems.
+const FURTHER_MAX: u16 = 300;
+
+/// Zeros of further systems, by their P.
+fn further(
     findings: &mut Findings<'_>,
     table: &OffsetsTable,
     axes: AxisSet,
-) -> [Option<AxisValues>; 9] {
-    table.systems().map(|system| {
-        let mut origin = [0.0; AXES];
-        for (axis, number) in system?.iter() {
-            if !axes.contains(axis as usize) {
-                let message = format!("the machine has no axis {}", axis.letter() as char);
-                findings.error("machine-offsets", &number.span, message, None);
-            }
-            origin[axis as usize] = number.value;
+) -> BTreeMap<u16, AxisValues> {
+    let mut all = BTreeMap::new();
+    let tables = [&table.g54_1, &table.g154].into_iter().flatten();
+    let systems = tables.flat_map(|table| {
+        let systems = table.value.iter();
+        systems.map(|(name, system)| (name, system, &table.span))
+    });
+    for (name, system, span) in systems {
+        let digits = name.strip_prefix('P').unwrap_or_default();
+        let number = digits.parse().ok();
+        let number = number.filter(|number| (1..=FURTHER_MAX).contains(number));
+        let origin = origin(findings, system, axes);
+        if number.is_none_or(|number| all.insert(number, origin).is_some()) {
+            let message =
+                format!("`{name}` is no number of a further work offset, or is given twice");
+            let help = format!("write P1 to P{FURTHER_MAX}: \"G54.1\" = {{ P1 = {{ X = -450 }} }}");
+            findings.error("machine-offsets", span, message, Some(help));
         }
-        Some(origin)
-    })
+    }
+    all
 }
 
 /// Where G28 and G30 lead, by axis, on controls that keep these points among their parameters.
