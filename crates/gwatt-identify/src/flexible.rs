@@ -11,9 +11,10 @@ use super::disturbance::as_it_is;
 use super::error::{IdentifyError, Outcome};
 use super::figure::Figure;
 use super::leaky_integrator::Leaky;
+use super::left::Left;
+use super::mean_speed;
 use super::measured_noise::Noise;
-use super::methods::{Estimator, Modelled, estimator};
-use super::missed::{missed_energy, peak_of_colour};
+use super::methods::{Modelled, estimator};
 use super::noise::Whiteness;
 use super::output_error::residuals;
 use super::parameters::parameters;
@@ -21,7 +22,7 @@ use super::prepared::{Prepared, prepare};
 use super::recording::Recording;
 use super::roots::{roots_of, stands_for_delay_s};
 use super::rubbing::{Rubbing, Term};
-use super::spectrum::{FrequencyResponse, excited_rad_s, explained_share};
+use super::spectrum::{FrequencyResponse, excited_rad_s};
 use super::state_space::Measured;
 use super::transfer::{Factor, TransferFunction};
 
@@ -52,6 +53,9 @@ pub struct Flexible {
     pub(crate) rubs: bool,
     /// Whether the speed that friction goes with is a sum of accelerations.
     pub speed_is_summed: bool,
+    /// Whether a recorded speed is the mean since the sample before, as differences of a
+    /// position are.
+    pub speed_is_mean: bool,
     /// Delay; from a command that is held, its half period of holding too.
     pub delay_s: Figure,
     /// The delay that was fitted, s: from a command it is longer by half a
@@ -103,6 +107,14 @@ pub struct Flexible {
 }
 
 impl Flexible {
+    /// The model as it was fitted, with that delay.
+    fn fitted(&self) -> TransferFunction {
+        TransferFunction {
+            delay_s: self.fitted_delay_s,
+            ..self.transfer.clone()
+        }
+    }
+
     /// By how much slow motion is late by delay, poles and zeros, but for zeros that count
     /// apart, with the standard error of the whole: poles, zeros and a delay that stand
     /// for one another are known together better than one by one, or not at all.
@@ -160,6 +172,23 @@ const BEYOND: f64 = 1.05;
 ///
 /// What keeps the recording from being used, or a model from being found.
 pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
+    let (prepared, found) = as_recorded(recording, choice)?;
+    if choice.method == Method::Iv
+        && prepared.is_force
+        && prepared.measured == Measured::Velocity
+        && mean_speed::is_likelier(&data_of(&prepared, &[]), &found.fitted())
+        && let Ok((_, summed)) = as_recorded(&mean_speed::summed(recording), choice)
+        && summed.noise_std < found.noise_std
+    {
+        return Ok(Flexible {
+            speed_is_mean: true,
+            ..summed
+        });
+    }
+    Ok(found)
+}
+
+fn as_recorded(recording: &Recording, choice: &Choice) -> Outcome<(Prepared, Flexible)> {
     let mut prepared = prepare(recording, choice)?;
     let may_rub = estimator(choice.method).has_friction() && prepared.is_force;
     if let Some(rubbing) = may_rub.then(|| Rubbing::of(recording)).flatten() {
@@ -169,11 +198,29 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
         if let Ok(found) = found
             && found.rubs
         {
-            return Ok(found);
+            return Ok((prepared, found));
         }
         prepared.input = force;
     }
-    identified(&prepared, choice, &Rubbing::default())
+    let found = identified(&prepared, choice, &Rubbing::default())?;
+    Ok((prepared, found))
+}
+
+/// What is fitted, next to these terms of friction.
+fn data_of<'a>(prepared: &'a Prepared, friction: &'a [Vec<f64>]) -> Data<'a> {
+    Data {
+        input: &prepared.input,
+        friction,
+        output: &prepared.output,
+        undisturbed: None,
+        period_s: prepared.period_s,
+        measured: prepared.measured,
+        from_command: !prepared.is_force,
+        early_s: prepared.early_s,
+        positions: prepared.positions,
+        every: 1,
+        leak: 0.0,
+    }
 }
 
 fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcome<Flexible> {
@@ -192,17 +239,8 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
         None => None,
     };
     let data = Data {
-        input: &prepared.input,
-        friction: &rubbing.inputs,
-        output: &prepared.output,
         undisturbed: undisturbed.as_deref(),
-        period_s: prepared.period_s,
-        measured: prepared.measured,
-        from_command: !prepared.is_force,
-        early_s: prepared.early_s,
-        positions: prepared.positions,
-        every: 1,
-        leak: 0.0,
+        ..data_of(prepared, &rubbing.inputs)
     };
     let found = method.estimate(&data, prepared, given);
     let mut found = found.ok_or_else(|| {
@@ -225,17 +263,6 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
         inertia.std = libm::hypot(inertia.std, viscous.value * prepared.period_s);
     }
     Ok(described)
-}
-
-/// Norm of what is left by norm of the output, means taken off.
-fn share(data: &Data<'_>, left: &[f64]) -> f64 {
-    let power = |x: &[f64]| -> f64 {
-        let n = x.len().max(1) as f64;
-        let mean = x.iter().sum::<f64>() / n;
-        x.iter().map(|x| (x - mean) * (x - mean)).sum()
-    };
-    let all = power(data.output.get(data.skip()..).unwrap_or_default());
-    (power(left) / all).sqrt()
 }
 
 /// Up to where zeros and poles are shown, rad/s.
@@ -269,58 +296,6 @@ fn keep_ringing(roots: &mut [Vec<Root>], period_s: f64) {
         list.retain(Root::rings);
         for root in list {
             root.runs_between_samples(period_s);
-        }
-    }
-}
-
-/// What figures are off by at most counts as so many standard errors.
-const AT_MOST: f64 = 2.0;
-
-/// What a model leaves.
-struct Left {
-    /// What makes the noise white.
-    white: Vec<f64>,
-    /// Norm of it by norm of the output.
-    rel_error: f64,
-    /// Which share of it the input explains.
-    missed_share: f64,
-    /// The energy of that, in units of the noise.
-    missed_energy: f64,
-}
-
-impl Left {
-    fn of(found: &Modelled, data: &Data<'_>) -> Self {
-        let leaky = found.noise.held(data);
-        let compared = leaky.as_ref().map_or(*data, |leaky| leaky.data(data));
-        let left = residuals(&compared, &found.estimate).unwrap_or_default();
-        let mut rel_error = share(&compared, &left);
-        if leaky.is_some() {
-            let plain = as_it_is(data, &found.estimate.transfer);
-            let plain = plain.and_then(|plain| residuals(data, &plain));
-            rel_error = rel_error.min(plain.map_or(f64::MAX, |left| share(data, &left)));
-        }
-        let known = data.undisturbed.unwrap_or(compared.input);
-        let known = known.get(data.skip()..).unwrap_or_default();
-        let white = filtered(&left, &found.noise.taps);
-        Self {
-            rel_error,
-            missed_share: explained_share(known, &left, data.period_s),
-            missed_energy: missed_energy(known, &white, data.period_s),
-            white,
-        }
-    }
-
-    /// Widens standard errors by what is more than white noise.
-    fn widen(&self, found: &mut Modelled, method: &dyn Estimator) {
-        let colour = if method.knows_colour() {
-            1.0
-        } else {
-            peak_of_colour(&self.white)
-        };
-        let wider = colour + self.missed_energy / (AT_MOST * AT_MOST);
-        found.estimate.covariance *= wider;
-        for figure in &mut found.estimate.friction {
-            figure.std *= wider.sqrt();
         }
     }
 }
@@ -379,6 +354,7 @@ fn describe(
         coulomb: None,
         rubs: false,
         speed_is_summed: false,
+        speed_is_mean: false,
         delay_s: Figure {
             value: transfer.delay_s,
             std: libm::hypot(delay_std, stands_for_delay_s(&transfer, data.from_command)),
@@ -413,6 +389,8 @@ fn describe(
 ///
 /// When that recording cannot be used.
 pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Outcome<f64> {
+    let summed = model.speed_is_mean.then(|| mean_speed::summed(other));
+    let other = summed.as_ref().unwrap_or(other);
     let mut prepared = prepare(other, choice)?;
     let value = |figure: Option<Figure>| figure.map(|figure| figure.value);
     let figures = [
@@ -423,23 +401,8 @@ pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Ou
     if let Some(rubbing) = Rubbing::known(other, mass, figures) {
         rubbing.take_off(&mut prepared.input);
     }
-    let data = Data {
-        input: &prepared.input,
-        friction: &[],
-        output: &prepared.output,
-        undisturbed: None,
-        period_s: prepared.period_s,
-        measured: prepared.measured,
-        from_command: !prepared.is_force,
-        early_s: prepared.early_s,
-        positions: prepared.positions,
-        every: 1,
-        leak: 0.0,
-    };
-    let fitted = TransferFunction {
-        delay_s: model.fitted_delay_s,
-        ..model.transfer.clone()
-    };
+    let data = data_of(&prepared, &[]);
+    let fitted = model.fitted();
     let share = |data: &Data<'_>| {
         let left = as_it_is(data, &fitted).and_then(|found| residuals(data, &found))?;
         let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();

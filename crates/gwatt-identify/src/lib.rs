@@ -49,6 +49,8 @@ mod stepwise_search;
 mod lateness;
 mod layout;
 mod leaky_integrator;
+mod left;
+mod mean_speed;
 mod methods;
 mod modal;
 mod missed;

@@ -9,7 +9,7 @@ use gwatt_identify::flexible::{self, Choice, Flexible, Method, Root};
 use gwatt_identify::{Figure, Given, Judgement, Quantity, judgement};
 
 use crate::simulated::Random;
-use crate::swinging::{FINE, Swing, Table};
+use crate::swinging::{FINE, Sensor, Swing, Table};
 
 /// What the tables of a cell have in common.
 struct Cell {
@@ -22,9 +22,12 @@ struct Cell {
     coulomb: f64,
     /// Delay in steps of the simulation.
     late: usize,
-    /// Steps of the encoder, m.
-    encoder: f64,
+    sensor: Sensor,
     excitation: f64,
+    /// Of the recorded force, N.
+    noise: f64,
+    /// What the drive gives at most, N.
+    limit: f64,
 }
 
 const PLAIN: Cell = Cell {
@@ -35,11 +38,13 @@ const PLAIN: Cell = Cell {
     viscous: 0.0,
     coulomb: 0.0,
     late: 0,
-    encoder: 1e-6,
+    sensor: Sensor::Position(1e-6),
     excitation: 20.0,
+    noise: 0.0,
+    limit: f64::INFINITY,
 };
 
-const CELLS: [Cell; 14] = [
+const CELLS: [Cell; 18] = [
     Cell {
         name: "10-25 Hz",
         hz: [10.0, 25.0],
@@ -52,13 +57,13 @@ const CELLS: [Cell; 14] = [
     Cell {
         name: "60-150 Hz",
         hz: [60.0, 150.0],
-        encoder: 1e-7,
+        sensor: Sensor::Position(1e-7),
         ..PLAIN
     },
     Cell {
         name: "150-300 Hz",
         hz: [150.0, 260.0],
-        encoder: 1e-7,
+        sensor: Sensor::Position(1e-7),
         ..PLAIN
     },
     Cell {
@@ -69,7 +74,7 @@ const CELLS: [Cell; 14] = [
     Cell {
         name: "damping 0.05-0.1",
         damping: [0.05, 0.1],
-        encoder: 1e-7,
+        sensor: Sensor::Position(1e-7),
         ..PLAIN
     },
     Cell {
@@ -82,7 +87,7 @@ const CELLS: [Cell; 14] = [
         name: "three",
         swings: 3,
         hz: [15.0, 35.0],
-        encoder: 1e-7,
+        sensor: Sensor::Position(1e-7),
         ..PLAIN
     },
     Cell {
@@ -117,7 +122,30 @@ const CELLS: [Cell; 14] = [
     Cell {
         name: "10 µm",
         hz: [10.0, 30.0],
-        encoder: 1e-5,
+        sensor: Sensor::Position(1e-5),
+        ..PLAIN
+    },
+    Cell {
+        name: "speed",
+        sensor: Sensor::Speed(1e-4),
+        ..PLAIN
+    },
+    Cell {
+        name: "speed, Coulomb",
+        viscous: 300.0,
+        coulomb: 25.0,
+        sensor: Sensor::Speed(1e-4),
+        ..PLAIN
+    },
+    Cell {
+        name: "mean speed",
+        sensor: Sensor::MeanSpeed(1e-6),
+        ..PLAIN
+    },
+    Cell {
+        name: "clipped and noisy",
+        noise: 0.2,
+        limit: 30.0,
         ..PLAIN
     },
 ];
@@ -148,6 +176,7 @@ impl Cell {
             viscous: self.viscous,
             coulomb: self.coulomb,
             late: self.late,
+            limit: self.limit,
         }
     }
 }
@@ -233,6 +262,20 @@ impl Sums {
         }
         if is_loud {
             println!("  {seed}: {:?}{line}", verdict.map(Judgement::word));
+            if let Some(found) = found {
+                println!(
+                    "    left {:.4}, of which {:.4} missed, energy {:.1}; white {:.2}, steady {:.2} of their limits; leak {} and {} taps",
+                    found.rel_error,
+                    found.missed_share,
+                    found.missed_energy,
+                    found.whiteness.statistic / found.whiteness.limit,
+                    found.steadiness.statistic / found.steadiness.limit,
+                    found.leak,
+                    found.noise_order,
+                );
+                let shares = figures.iter().flatten().map(|it| it.std / it.value);
+                println!("    {:.4?}", shares.collect::<Vec<_>>());
+            }
         }
     }
 
@@ -259,10 +302,14 @@ fn sums(cell: &Cell, seeds: u64) -> Sums {
         let mut bounds = Vec::new();
         for seed in plant * OF_ONE..seeds.min((plant + 1) * OF_ONE) {
             let mut random = Random(100 + seed);
-            let recording = table.recorded(SAMPLES, (cell.excitation, cell.encoder), &mut random);
+            let recording = table.recorded(
+                SAMPLES,
+                (cell.excitation, cell.noise, cell.sensor),
+                &mut random,
+            );
             if bounds.is_empty() {
                 let force = recording.get(Quantity::Force).unwrap();
-                bounds = table.bounds(&force.values, cell.encoder);
+                bounds = table.bounds(&force.values, cell.sensor);
             }
             let choice = Choice {
                 method: Method::Iv,
