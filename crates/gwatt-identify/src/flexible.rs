@@ -6,6 +6,7 @@ use super::arx;
 use super::candidate_models::FAST;
 use super::certainty;
 use super::chosen::{LAGS, filtered};
+use super::creeping::{inertia, slow_rad_s};
 use super::data::Data;
 use super::disturbance::as_it_is;
 use super::error::{IdentifyError, Outcome};
@@ -35,7 +36,8 @@ pub struct Flexible {
     /// The model, from force to acceleration (from commanded to real
     /// acceleration where the command is the input).
     pub transfer: TransferFunction,
-    /// Inertia or mass: 1/gain. Absent from a command, and where not even its sign is known.
+    /// Inertia or mass: 1/gain, but of motion above what creeps more slowly than it swings. Absent
+    /// from a command, and where not even its sign is known.
     pub inertia: Option<Figure>,
     /// Anti-resonances: zeros that make a dip.
     pub zeros: Vec<Root>,
@@ -323,8 +325,11 @@ fn describe(
             "check that input and motion are of the same axis and the same time",
         ));
     }
-    let is_unsure = |std: f64| !std.is_nan() && std > certainty::SIGN_SHARE * gain.abs();
-    let sign_is_sure = !estimate.std(0).is_some_and(is_unsure);
+    let slow = slow_rad_s(data.len(), data.period_s);
+    let covariance = Some(&estimate.covariance).filter(|it| !it.is_empty());
+    let inertia = inertia(&transfer, slow, covariance);
+    let sign_is_sure =
+        inertia.std.is_nan() || inertia.std <= certainty::SIGN_SHARE * inertia.value.abs();
     let bands = shown_up_to(data, &found.response);
     let mut roots = roots_of(&transfer, bands, std);
     if data.from_command {
@@ -344,8 +349,12 @@ fn describe(
         fitted_delay_s,
         // One that may be of any size, or negative, is no figure.
         inertia: (prepared.is_force && (sign_is_sure || !found.has_errors)).then(|| Figure {
-            value: 1.0 / gain,
-            std: std(0) / (gain * gain),
+            std: if found.has_errors {
+                inertia.std
+            } else {
+                f64::NAN
+            },
+            ..inertia
         }),
         zeros,
         unclear_zeros,

@@ -4,11 +4,12 @@
 use std::env;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
+use std::ops::Range;
 
 use gwatt_identify::flexible::{self, Choice, Flexible, Method, Root};
 use gwatt_identify::{Figure, Given, Judgement, Quantity, judgement};
 
-use crate::simulated::Random;
+use crate::simulated::{Random, wanted};
 use crate::swinging::{FINE, Sensor, Swing, Table};
 
 /// What the tables of a cell have in common.
@@ -295,12 +296,13 @@ impl Sums {
     }
 }
 
-fn sums(cell: &Cell, seeds: u64) -> Sums {
+fn sums(cell: &Cell, seeds: Range<u64>) -> Sums {
     let mut sums = Sums::default();
-    for plant in 0..seeds.div_ceil(OF_ONE) {
+    for plant in seeds.start / OF_ONE..seeds.end.div_ceil(OF_ONE) {
         let table = cell.table(&mut Random(7000 + plant));
         let mut bounds = Vec::new();
-        for seed in plant * OF_ONE..seeds.min((plant + 1) * OF_ONE) {
+        let (first, end) = (plant * OF_ONE, (plant + 1) * OF_ONE);
+        for seed in seeds.start.max(first)..seeds.end.min(end) {
             let mut random = Random(100 + seed);
             let recording = table.recorded(
                 SAMPLES,
@@ -330,20 +332,19 @@ fn least_share(all: usize) -> f64 {
 }
 
 /// In each cell figures are within two of their standard errors as often as they must be, and
-/// none is missing. `GWATT_CELL` names one cell, `GWATT_SEEDS` how many recordings,
+/// none is missing. `GWATT_CELL` names one cell, `GWATT_CASES` which recordings (as in `20..40`),
 /// `GWATT_LOUD` prints errors and standard errors of each in units of the bound.
 #[test]
 #[ignore = "minutes: cargo test --release -p gwatt-identify -- --ignored --nocapture as_sure_as"]
 fn figures_are_as_sure_as_they_say() {
-    let wanted = env::var("GWATT_CELL").ok();
-    let seeds = env::var("GWATT_SEEDS").ok();
-    let seeds = seeds.and_then(|it| it.parse().ok()).unwrap_or(60);
+    let named = env::var("GWATT_CELL").ok();
+    let seeds = wanted(60);
     let mut wrong = Vec::new();
     for cell in CELLS {
-        if wanted.as_ref().is_some_and(|name| name != cell.name) {
+        if named.as_ref().is_some_and(|name| name != cell.name) {
             continue;
         }
-        let sums = sums(&cell, seeds);
+        let sums = sums(&cell, seeds.clone());
         println!("{}", sums.line(cell.name));
         let share = sums.inside as f64 / sums.all.max(1) as f64;
         if share < least_share(sums.all) || sums.missing > 0 {
