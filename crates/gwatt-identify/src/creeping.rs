@@ -32,10 +32,12 @@ pub(super) fn inertia(
     // A zero more, or a pole, has another unit than an inertia.
     if zeros.len() == poles.len() {
         let first_pole = 1 + transfer.zero_count();
-        zeros.iter().for_each(|root| out.take(root, 1, -1.0));
-        poles
-            .iter()
-            .for_each(|root| out.take(root, first_pole, 1.0));
+        for root in zeros {
+            out.take(root, 1, -1.0);
+        }
+        for root in poles {
+            out.take(root, first_pole, 1.0);
+        }
     }
     // A delay, which comes last, makes no inertia.
     let variance = |covariance: &DMatrix<f64>| -> f64 {

@@ -302,6 +302,19 @@ fn keep_ringing(roots: &mut [Vec<Root>], period_s: f64) {
     }
 }
 
+/// The inertia, and whether its sign is sure.
+fn inertia_of(found: &Modelled, data: &Data<'_>) -> (Figure, bool) {
+    let estimate = &found.estimate;
+    let slow = slow_rad_s(data.len(), data.period_s);
+    let covariance = Some(&estimate.covariance).filter(|it| !it.is_empty());
+    let mut out = inertia(&estimate.transfer, slow, covariance);
+    let is_sure = out.std.is_nan() || out.std <= certainty::SIGN_SHARE * out.value.abs();
+    if !found.has_errors {
+        out.std = f64::NAN;
+    }
+    (out, is_sure)
+}
+
 fn describe(
     found: Modelled,
     data: &Data<'_>,
@@ -325,11 +338,7 @@ fn describe(
             "check that input and motion are of the same axis and the same time",
         ));
     }
-    let slow = slow_rad_s(data.len(), data.period_s);
-    let covariance = Some(&estimate.covariance).filter(|it| !it.is_empty());
-    let inertia = inertia(&transfer, slow, covariance);
-    let sign_is_sure =
-        inertia.std.is_nan() || inertia.std <= certainty::SIGN_SHARE * inertia.value.abs();
+    let (inertia, sign_is_sure) = inertia_of(&found, data);
     let bands = shown_up_to(data, &found.response);
     let mut roots = roots_of(&transfer, bands, std);
     if data.from_command {
@@ -348,14 +357,7 @@ fn describe(
     Ok(Flexible {
         fitted_delay_s,
         // One that may be of any size, or negative, is no figure.
-        inertia: (prepared.is_force && (sign_is_sure || !found.has_errors)).then(|| Figure {
-            std: if found.has_errors {
-                inertia.std
-            } else {
-                f64::NAN
-            },
-            ..inertia
-        }),
+        inertia: (prepared.is_force && (sign_is_sure || !found.has_errors)).then_some(inertia),
         zeros,
         unclear_zeros,
         poles,
