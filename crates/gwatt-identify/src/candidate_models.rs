@@ -140,9 +140,19 @@ pub fn neighbours(
 /// A pole and a zero so near, as a share, may stand for nothing next to one another.
 pub const CANCELLED_SHARE: f64 = 0.2;
 
-/// Without a pole and a zero that are as near to each other as that.
+/// Without a pole and a zero that are as near to each other as that; real ones of a pair one by
+/// one.
 #[must_use]
 pub fn cancelled(from: &TransferFunction, near: f64) -> Vec<TransferFunction> {
+    let mut out = without_near(from, near);
+    let apart = from.apart();
+    if apart.poles.len() + apart.zeros.len() > from.poles.len() + from.zeros.len() {
+        out.extend(without_near(&apart, near));
+    }
+    out
+}
+
+fn without_near(from: &TransferFunction, near: f64) -> Vec<TransferFunction> {
     let mut out = Vec::new();
     for (index, pole) in from.poles.iter().enumerate() {
         let is_near = |zero: &Factor| {
@@ -289,18 +299,10 @@ pub fn simpler(
     if given.order.is_some() || given.zeros.is_some() {
         return Vec::new();
     }
-    let slowest = |factor: &Factor| match *factor {
-        Factor::Pair {
-            omega_rad_s,
-            damping,
-        } if damping.abs() > 1.0 => {
-            omega_rad_s / (damping.abs() + (damping * damping - 1.0).sqrt())
-        }
-        _ => factor.corner_rad_s(),
-    };
     let fast = |list: &[Factor]| -> Vec<Factor> {
-        let fast = list.iter().filter(|factor| slowest(factor) > slow_rad_s);
-        fast.copied().collect()
+        let each = list.iter().flat_map(|factor| factor.apart());
+        each.filter(|factor| factor.corner_rad_s() > slow_rad_s)
+            .collect()
     };
     let mut quick = TransferFunction {
         zeros: fast(&from.zeros),

@@ -9,7 +9,7 @@ use super::candidate_models::Given;
 use super::certainty;
 use super::chosen::{COARSE, LAGS};
 use super::data::Data;
-use super::estimate::Estimate;
+use super::estimate::{Estimate, ROUNDING};
 use super::leaky_integrator::Leaky;
 use super::measured_noise::Noise;
 use super::mode_starts;
@@ -27,8 +27,6 @@ const LASTS: f64 = 2.0;
 /// Integrators leak no less: held for longer, what wanders leaves too few digits for what
 /// swings, and slower than this nothing of an axis is.
 const LEAST: f64 = 2e-5;
-/// Noise of a smaller share of a position has too few digits in it.
-const DIGITS: f64 = 2e-12;
 /// Leak of the integrators at first, as a share of the band.
 const SLOW: f64 = 0.25;
 /// Taps before any model was searched for: what is missing must not pass for noise.
@@ -219,7 +217,7 @@ impl Noise {
     /// `None` also where motion leaves no digits for noise.
     fn criterion(&self, data: &Data<'_>, transfer: &TransferFunction) -> Option<(f64, Estimate)> {
         let found = refine(data, transfer, false, &self.taps, EFFORT)?;
-        if data.leak > 0.0 && found.rest < DIGITS * found.power {
+        if data.leak > 0.0 && found.rest < ROUNDING * found.power {
             return None;
         }
         let each = found.rest / found.rows.max(1) as f64;

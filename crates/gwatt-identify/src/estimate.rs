@@ -48,7 +48,7 @@ impl Estimate {
     /// Whether nothing is left that another model could explain.
     #[must_use]
     pub fn is_exact(&self) -> bool {
-        self.rest <= self.floor.max(EXACT) * self.power
+        self.rest <= self.floor * self.power
     }
 
     /// Akaike's criterion: the smaller, the likelier, whatever is rare.
@@ -69,9 +69,8 @@ impl Estimate {
     }
 }
 
-/// The share of a signal that counts as rounding, and the one that is as good as nothing.
+/// The share of a signal's squares that counts as rounding: what is left is as good as nothing.
 pub(super) const ROUNDING: f64 = 1e-14;
-const EXACT: f64 = 1e-12;
 /// The same next to friction: whatever it does besides being viscous and Coulomb friction is
 /// more than that, and no mode of the axis.
 pub(super) const FRICTION: f64 = 1e-6;

@@ -6,14 +6,16 @@ use super::arx;
 use super::candidate_models::FAST;
 use super::certainty;
 use super::chosen::{LAGS, filtered};
+use super::creeping::{inertia, slow_rad_s};
 use super::data::Data;
 use super::disturbance::as_it_is;
 use super::error::{IdentifyError, Outcome};
 use super::figure::Figure;
 use super::leaky_integrator::Leaky;
+use super::left::Left;
+use super::mean_speed;
 use super::measured_noise::Noise;
-use super::methods::{Estimator, Modelled, estimator};
-use super::missed::{missed_energy, peak_of_colour};
+use super::methods::{Modelled, estimator};
 use super::noise::Whiteness;
 use super::output_error::residuals;
 use super::parameters::parameters;
@@ -21,7 +23,7 @@ use super::prepared::{Prepared, prepare};
 use super::recording::Recording;
 use super::roots::{roots_of, stands_for_delay_s};
 use super::rubbing::{Rubbing, Term};
-use super::spectrum::{FrequencyResponse, excited_rad_s, explained_share};
+use super::spectrum::{FrequencyResponse, excited_rad_s};
 use super::state_space::Measured;
 use super::transfer::{Factor, TransferFunction};
 
@@ -34,7 +36,8 @@ pub struct Flexible {
     /// The model, from force to acceleration (from commanded to real
     /// acceleration where the command is the input).
     pub transfer: TransferFunction,
-    /// Inertia or mass: 1/gain. Absent from a command, and where not even its sign is known.
+    /// Inertia or mass: 1/gain, but of motion above what creeps more slowly than it swings. Absent
+    /// from a command, and where not even its sign is known.
     pub inertia: Option<Figure>,
     /// Anti-resonances: zeros that make a dip.
     pub zeros: Vec<Root>,
@@ -52,6 +55,9 @@ pub struct Flexible {
     pub(crate) rubs: bool,
     /// Whether the speed that friction goes with is a sum of accelerations.
     pub speed_is_summed: bool,
+    /// Whether a recorded speed is the mean since the sample before, as differences of a
+    /// position are.
+    pub speed_is_mean: bool,
     /// Delay; from a command that is held, its half period of holding too.
     pub delay_s: Figure,
     /// The delay that was fitted, s: from a command it is longer by half a
@@ -103,6 +109,14 @@ pub struct Flexible {
 }
 
 impl Flexible {
+    /// The model as it was fitted, with that delay.
+    fn fitted(&self) -> TransferFunction {
+        TransferFunction {
+            delay_s: self.fitted_delay_s,
+            ..self.transfer.clone()
+        }
+    }
+
     /// By how much slow motion is late by delay, poles and zeros, but for zeros that count
     /// apart, with the standard error of the whole: poles, zeros and a delay that stand
     /// for one another are known together better than one by one, or not at all.
@@ -160,6 +174,23 @@ const BEYOND: f64 = 1.05;
 ///
 /// What keeps the recording from being used, or a model from being found.
 pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
+    let (prepared, found) = as_recorded(recording, choice)?;
+    if choice.method == Method::Iv
+        && prepared.is_force
+        && prepared.measured == Measured::Velocity
+        && mean_speed::is_likelier(&data_of(&prepared, &[]), &found.fitted())
+        && let Ok((_, summed)) = as_recorded(&mean_speed::summed(recording), choice)
+        && summed.noise_std < found.noise_std
+    {
+        return Ok(Flexible {
+            speed_is_mean: true,
+            ..summed
+        });
+    }
+    Ok(found)
+}
+
+fn as_recorded(recording: &Recording, choice: &Choice) -> Outcome<(Prepared, Flexible)> {
     let mut prepared = prepare(recording, choice)?;
     let may_rub = estimator(choice.method).has_friction() && prepared.is_force;
     if let Some(rubbing) = may_rub.then(|| Rubbing::of(recording)).flatten() {
@@ -169,11 +200,29 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
         if let Ok(found) = found
             && found.rubs
         {
-            return Ok(found);
+            return Ok((prepared, found));
         }
         prepared.input = force;
     }
-    identified(&prepared, choice, &Rubbing::default())
+    let found = identified(&prepared, choice, &Rubbing::default())?;
+    Ok((prepared, found))
+}
+
+/// What is fitted, next to these terms of friction.
+fn data_of<'a>(prepared: &'a Prepared, friction: &'a [Vec<f64>]) -> Data<'a> {
+    Data {
+        input: &prepared.input,
+        friction,
+        output: &prepared.output,
+        undisturbed: None,
+        period_s: prepared.period_s,
+        measured: prepared.measured,
+        from_command: !prepared.is_force,
+        early_s: prepared.early_s,
+        positions: prepared.positions,
+        every: 1,
+        leak: 0.0,
+    }
 }
 
 fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcome<Flexible> {
@@ -192,17 +241,8 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
         None => None,
     };
     let data = Data {
-        input: &prepared.input,
-        friction: &rubbing.inputs,
-        output: &prepared.output,
         undisturbed: undisturbed.as_deref(),
-        period_s: prepared.period_s,
-        measured: prepared.measured,
-        from_command: !prepared.is_force,
-        early_s: prepared.early_s,
-        positions: prepared.positions,
-        every: 1,
-        leak: 0.0,
+        ..data_of(prepared, &rubbing.inputs)
     };
     let found = method.estimate(&data, prepared, given);
     let mut found = found.ok_or_else(|| {
@@ -225,17 +265,6 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
         inertia.std = libm::hypot(inertia.std, viscous.value * prepared.period_s);
     }
     Ok(described)
-}
-
-/// Norm of what is left by norm of the output, means taken off.
-fn share(data: &Data<'_>, left: &[f64]) -> f64 {
-    let power = |x: &[f64]| -> f64 {
-        let n = x.len().max(1) as f64;
-        let mean = x.iter().sum::<f64>() / n;
-        x.iter().map(|x| (x - mean) * (x - mean)).sum()
-    };
-    let all = power(data.output.get(data.skip()..).unwrap_or_default());
-    (power(left) / all).sqrt()
 }
 
 /// Up to where zeros and poles are shown, rad/s.
@@ -273,56 +302,17 @@ fn keep_ringing(roots: &mut [Vec<Root>], period_s: f64) {
     }
 }
 
-/// What figures are off by at most counts as so many standard errors.
-const AT_MOST: f64 = 2.0;
-
-/// What a model leaves.
-struct Left {
-    /// What makes the noise white.
-    white: Vec<f64>,
-    /// Norm of it by norm of the output.
-    rel_error: f64,
-    /// Which share of it the input explains.
-    missed_share: f64,
-    /// The energy of that, in units of the noise.
-    missed_energy: f64,
-}
-
-impl Left {
-    fn of(found: &Modelled, data: &Data<'_>) -> Self {
-        let leaky = found.noise.held(data);
-        let compared = leaky.as_ref().map_or(*data, |leaky| leaky.data(data));
-        let left = residuals(&compared, &found.estimate).unwrap_or_default();
-        let mut rel_error = share(&compared, &left);
-        if leaky.is_some() {
-            let plain = as_it_is(data, &found.estimate.transfer);
-            let plain = plain.and_then(|plain| residuals(data, &plain));
-            rel_error = rel_error.min(plain.map_or(f64::MAX, |left| share(data, &left)));
-        }
-        let known = data.undisturbed.unwrap_or(compared.input);
-        let known = known.get(data.skip()..).unwrap_or_default();
-        let white = filtered(&left, &found.noise.taps);
-        Self {
-            rel_error,
-            missed_share: explained_share(known, &left, data.period_s),
-            missed_energy: missed_energy(known, &white, data.period_s),
-            white,
-        }
+/// The inertia, and whether its sign is sure.
+fn inertia_of(found: &Modelled, data: &Data<'_>) -> (Figure, bool) {
+    let estimate = &found.estimate;
+    let slow = slow_rad_s(data.len(), data.period_s);
+    let covariance = Some(&estimate.covariance).filter(|it| !it.is_empty());
+    let mut out = inertia(&estimate.transfer, slow, covariance);
+    let is_sure = out.std.is_nan() || out.std <= certainty::SIGN_SHARE * out.value.abs();
+    if !found.has_errors {
+        out.std = f64::NAN;
     }
-
-    /// Widens standard errors by what is more than white noise.
-    fn widen(&self, found: &mut Modelled, method: &dyn Estimator) {
-        let colour = if method.knows_colour() {
-            1.0
-        } else {
-            peak_of_colour(&self.white)
-        };
-        let wider = colour + self.missed_energy / (AT_MOST * AT_MOST);
-        found.estimate.covariance *= wider;
-        for figure in &mut found.estimate.friction {
-            figure.std *= wider.sqrt();
-        }
-    }
+    (out, is_sure)
 }
 
 fn describe(
@@ -348,8 +338,7 @@ fn describe(
             "check that input and motion are of the same axis and the same time",
         ));
     }
-    let is_unsure = |std: f64| !std.is_nan() && std > certainty::SIGN_SHARE * gain.abs();
-    let sign_is_sure = !estimate.std(0).is_some_and(is_unsure);
+    let (inertia, sign_is_sure) = inertia_of(&found, data);
     let bands = shown_up_to(data, &found.response);
     let mut roots = roots_of(&transfer, bands, std);
     if data.from_command {
@@ -368,10 +357,7 @@ fn describe(
     Ok(Flexible {
         fitted_delay_s,
         // One that may be of any size, or negative, is no figure.
-        inertia: (prepared.is_force && (sign_is_sure || !found.has_errors)).then(|| Figure {
-            value: 1.0 / gain,
-            std: std(0) / (gain * gain),
-        }),
+        inertia: (prepared.is_force && (sign_is_sure || !found.has_errors)).then_some(inertia),
         zeros,
         unclear_zeros,
         poles,
@@ -379,6 +365,7 @@ fn describe(
         coulomb: None,
         rubs: false,
         speed_is_summed: false,
+        speed_is_mean: false,
         delay_s: Figure {
             value: transfer.delay_s,
             std: libm::hypot(delay_std, stands_for_delay_s(&transfer, data.from_command)),
@@ -413,6 +400,8 @@ fn describe(
 ///
 /// When that recording cannot be used.
 pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Outcome<f64> {
+    let summed = model.speed_is_mean.then(|| mean_speed::summed(other));
+    let other = summed.as_ref().unwrap_or(other);
     let mut prepared = prepare(other, choice)?;
     let value = |figure: Option<Figure>| figure.map(|figure| figure.value);
     let figures = [
@@ -423,23 +412,8 @@ pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Ou
     if let Some(rubbing) = Rubbing::known(other, mass, figures) {
         rubbing.take_off(&mut prepared.input);
     }
-    let data = Data {
-        input: &prepared.input,
-        friction: &[],
-        output: &prepared.output,
-        undisturbed: None,
-        period_s: prepared.period_s,
-        measured: prepared.measured,
-        from_command: !prepared.is_force,
-        early_s: prepared.early_s,
-        positions: prepared.positions,
-        every: 1,
-        leak: 0.0,
-    };
-    let fitted = TransferFunction {
-        delay_s: model.fitted_delay_s,
-        ..model.transfer.clone()
-    };
+    let data = data_of(&prepared, &[]);
+    let fitted = model.fitted();
     let share = |data: &Data<'_>| {
         let left = as_it_is(data, &fitted).and_then(|found| residuals(data, &found))?;
         let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();

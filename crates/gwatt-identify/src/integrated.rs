@@ -6,11 +6,10 @@
 //! goes on after that. What is found may show still other noise, or may have modes that
 //! stand for noise: then the search goes on from there, among neighbours.
 
-use std::f64::consts::PI;
-
 use super::any_delay::{Timed, timed};
 use super::candidate_models::{Given, simpler};
 use super::chosen::{CHOSEN, COMPARED, Chosen, WHITENING_MAX, fewer_rows, is_white};
+use super::creeping::slow_rad_s;
 use super::data::Data;
 use super::delay_profile::doubt_s;
 use super::disturbance::as_it_is;
@@ -25,8 +24,6 @@ use super::transfer::TransferFunction;
 
 /// Rounds of model and noise, after the one that the starts are fitted in.
 const ROUNDS: usize = 3;
-/// What swings so many times only while a recording lasts may be a disturbance.
-const SLOW: f64 = 20.0;
 /// Simpler models next to which the noise is taken.
 const SIMPLE: usize = 2;
 /// Steps of all fits of the first search, and as many to spare.
@@ -181,7 +178,7 @@ impl Stage<'_> {
     /// part of a period of delay.
     fn simple(&self, best: &Estimate) -> Option<(Noise, TransferFunction)> {
         let raw = &self.raw;
-        let slow_rad_s = SLOW * 2.0 * PI / (raw.len() as f64 * raw.period_s);
+        let slow_rad_s = slow_rad_s(raw.len(), raw.period_s);
         let band_rad_s = self.response.band_rad_s();
         let less = simpler(
             &best.transfer,

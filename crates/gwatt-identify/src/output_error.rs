@@ -38,6 +38,10 @@ const DAMPING: f64 = 1e-4;
 const DAMPING_LEAKY: f64 = 1e-7;
 const DAMPING_LAST: f64 = 1e-12;
 
+/// A smaller share of the squares before offset and first state are fitted has lost its digits:
+/// they are taken off, and what is left is summed up again.
+const LOST: f64 = 1e-8;
+
 /// So near to the criterion that is to be beaten, a fit is given this many times
 /// the steps.
 const CRITERION_MARGIN: f64 = 20.0;
@@ -163,7 +167,9 @@ impl<'a> Fitting<'a> {
             ..*data
         };
         let task = Task {
-            gather: &|model: &TransferFunction| gather(&open, model, delay_is_free, left_out),
+            gather: &|model: &TransferFunction, known: &[f64]| {
+                gather(&open, model, delay_is_free, left_out, known)
+            },
             delay_is_free,
             period_s: raw.period_s,
             friction: raw.friction.len(),
@@ -187,26 +193,12 @@ impl<'a> Fitting<'a> {
             },
             samples: raw.len(),
         };
-        let start = task.place(start.clone())?;
-        let (
-            Place {
-                mut transfer,
-                mut normal,
-                ..
-            },
-            steps,
-        ) = descend(&task, start, task.damping)?;
+        let start = task.place(start.clone(), Vec::new())?;
+        let (mut end, steps) = descend(&task, start, task.damping)?;
         if data.undisturbed.is_some() {
-            (transfer, normal) = instrumental(data, transfer, delay_is_free, left_out)?;
+            end = instrumental(data, end, delay_is_free, left_out)?;
         }
-        let mut estimate = task.finish(transfer, &normal, steps)?;
-        if self.taps.is_empty() && raw.leak > 0.0 && raw.every == 1 {
-            // Next to what fades, squares have lost the digits of what is left.
-            let left: f64 = residuals(raw, &estimate)?.iter().map(|x| x * x).sum();
-            estimate.covariance *= left / estimate.rest;
-            estimate.rest = left;
-        }
-        Some(estimate)
+        task.finish(end, steps)
     }
 
     /// With offset and first state of the signals as they are.
@@ -218,7 +210,13 @@ impl<'a> Fitting<'a> {
                 ..self.raw
             };
             let delay_is_free = estimate.count > parameters(&estimate.transfer, false).len();
-            let normal = gather(&open, &estimate.transfer, delay_is_free, self.raw.skip())?;
+            let normal = gather(
+                &open,
+                &estimate.transfer,
+                delay_is_free,
+                self.raw.skip(),
+                &[],
+            )?;
             (estimate.state, estimate.offset) = nuisance(&rest(&normal, estimate.count)?);
         }
         Some(estimate)
@@ -227,7 +225,7 @@ impl<'a> Fitting<'a> {
 
 /// What is fitted.
 struct Task<'a> {
-    gather: &'a dyn Fn(&TransferFunction) -> Option<Normal>,
+    gather: &'a dyn Fn(&TransferFunction, &[f64]) -> Option<Normal>,
     delay_is_free: bool,
     period_s: f64,
     /// Terms of friction.
@@ -247,6 +245,8 @@ struct Task<'a> {
 /// Where a search stands.
 struct Place {
     transfer: TransferFunction,
+    /// What is known of first state, friction and offset: `normal` is of the rest.
+    known: Vec<f64>,
     normal: Normal,
     /// The sum of squares with offset and first state at their best.
     least: f64,
@@ -281,7 +281,8 @@ impl Descending for Task<'_> {
         }
         let next = moved(&at.transfer, self.delay_is_free, step.x.as_slice());
         let next = is_admissible(&next, self.period_s).then_some(next);
-        next.and_then(|next| self.place(next))
+        let known = added(&at.known, step.x.as_slice().get(self.count(&at.transfer)..));
+        next.and_then(|next| self.place(next, known))
             .map_or(Step::Nowhere, Step::To)
     }
 
@@ -300,13 +301,20 @@ impl Descending for Task<'_> {
 }
 
 impl Task<'_> {
-    fn place(&self, transfer: TransferFunction) -> Option<Place> {
-        let normal = (self.gather)(&transfer)?;
-        let least = rest(&normal, self.count(&transfer))?.rest;
+    fn place(&self, transfer: TransferFunction, mut known: Vec<f64>) -> Option<Place> {
+        let count = self.count(&transfer);
+        let mut normal = (self.gather)(&transfer, &known)?;
+        let mut left = rest(&normal, count)?;
+        if left.rest < LOST * normal.total {
+            known = added(&known, Some(left.x.as_slice()));
+            normal = (self.gather)(&transfer, &known)?;
+            left = rest(&normal, count)?;
+        }
         Some(Place {
             transfer,
+            known,
             normal,
-            least,
+            least: left.rest,
         })
     }
 
@@ -326,15 +334,19 @@ impl Task<'_> {
         charge(transfer, self.samples, self.period_s, self.from_command)
     }
 
-    fn finish(
-        &self,
-        transfer: TransferFunction,
-        normal: &Normal,
-        steps: usize,
-    ) -> Option<Estimate> {
+    fn finish(&self, at: Place, steps: usize) -> Option<Estimate> {
+        let Place {
+            transfer,
+            known,
+            normal,
+            ..
+        } = at;
         let count = self.count(&transfer);
-        let left = rest(normal, count)?;
-        let solution = solved(normal)?;
+        let mut left = rest(&normal, count)?;
+        for (x, known) in left.x.iter_mut().zip(&known) {
+            *x += known;
+        }
+        let solution = solved(&normal)?;
         let unknowns = count + left.x.len();
         let noise = left.rest / normal.rows.saturating_sub(unknowns).max(1) as f64;
         let (state, offset) = nuisance(&left);
@@ -369,20 +381,28 @@ fn solved(normal: &Normal) -> Option<Solution> {
     normal.solve().or_else(|| normal.solve_from(0, 1e-12))
 }
 
+/// What is known with more of it; nothing is known before the first of it.
+fn added(known: &[f64], more: Option<&[f64]>) -> Vec<f64> {
+    let known = known.iter().copied().chain(std::iter::repeat(0.0));
+    let more = more.unwrap_or_default().iter();
+    more.zip(known).map(|(more, known)| more + known).collect()
+}
+
 /// Steps that bring the products of instruments and differences to zero.
 fn instrumental(
     data: &Data<'_>,
-    mut transfer: TransferFunction,
+    mut at: Place,
     delay_is_free: bool,
     left_out: usize,
-) -> Option<(TransferFunction, Normal)> {
+) -> Option<Place> {
+    let gathered = |at: &Place| gather(data, &at.transfer, delay_is_free, left_out, &at.known);
     for _ in 0..20 {
-        let normal = gather(data, &transfer, delay_is_free, left_out)?;
+        let normal = gathered(&at)?;
         let step = solved(&normal)?;
         let mut size = 1.0;
         let next = loop {
             let part: Vec<f64> = step.x.iter().map(|x| x * size).collect();
-            let next = moved(&transfer, delay_is_free, &part);
+            let next = moved(&at.transfer, delay_is_free, &part);
             if is_admissible(&next, data.period_s) {
                 break next;
             }
@@ -398,15 +418,15 @@ fn instrumental(
             .iter()
             .zip(step.inverse.diagonal().iter())
             .map(|(x, d)| x.abs() / (d * noise).sqrt().max(f64::MIN_POSITIVE))
-            .take(parameters(&transfer, delay_is_free).len())
+            .take(parameters(&at.transfer, delay_is_free).len())
             .fold(0.0, f64::max);
-        transfer = next;
+        at.transfer = next;
         if far < 1e-3 {
             break;
         }
     }
-    let normal = gather(data, &transfer, delay_is_free, left_out)?;
-    Some((transfer, normal))
+    at.normal = gathered(&at)?;
+    Some(at)
 }
 
 fn moved(transfer: &TransferFunction, delay_is_free: bool, step: &[f64]) -> TransferFunction {

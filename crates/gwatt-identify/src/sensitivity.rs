@@ -104,13 +104,15 @@ impl Derivatives {
 
 /// Normal equations of a step from a model: a column for each parameter, one for
 /// each state of the first row that counts and of leaky integrators, one for each term
-/// of friction, and one for an offset. The rows before `first` do not count.
+/// of friction, and one for an offset. The rows before `first` do not count. What is `known`
+/// of the unknowns after the parameters is taken off: steps go on from there.
 #[must_use]
 pub fn gather(
     data: &Data<'_>,
     transfer: &TransferFunction,
     delay_is_free: bool,
     first: usize,
+    known: &[f64],
 ) -> Option<Normal> {
     let derivatives = Derivatives::new(data, transfer, delay_is_free)?;
     let base = &derivatives.base;
@@ -148,21 +150,13 @@ pub fn gather(
             Some(open) => combine(&mut simulated, &open.output(base), open.signals()),
             None => combine(&mut simulated, &output, bank.signals()),
         }
-        free.next(rows, |index, column| {
-            let at = count + index;
-            match (column, columns.get_mut(at), is_over.get_mut(at)) {
-                (Some(column), Some(slot), _) => *slot = *column,
-                (None, _, Some(over)) => *over = true,
-                _ => {}
-            }
-        });
+        let mut fill = |at: usize, column: Option<&Column>| match column {
+            Some(column) => columns.get_mut(at).map_or((), |slot| *slot = *column),
+            None => is_over.get_mut(at).map_or((), |over| *over = true),
+        };
+        free.next(rows, |index, column| fill(count + index, column));
         fading.next(rows, |index, column| {
-            let at = count + base.order() + index;
-            match (column, columns.get_mut(at), is_over.get_mut(at)) {
-                (Some(column), Some(slot), _) => *slot = *column,
-                (None, _, Some(over)) => *over = true,
-                _ => {}
-            }
+            fill(count + base.order() + index, column);
         });
         for (slot, column) in columns
             .iter_mut()
@@ -176,6 +170,12 @@ pub fn gather(
         let measured = measured.iter().step_by(data.every).take(rows);
         for ((gap, y), simulated) in gaps.iter_mut().zip(measured).zip(&simulated) {
             *gap = y - simulated;
+        }
+        let taken = columns.iter().zip(&is_over).skip(count).zip(known);
+        for ((column, _), known) in taken.filter(|((_, over), _)| !**over) {
+            gaps.iter_mut()
+                .zip(column)
+                .for_each(|(gap, x)| *gap -= known * x);
         }
         let live: Vec<(usize, &[f64])> = columns
             .iter()

@@ -76,6 +76,24 @@ impl Factor {
         matches!(self, Self::Pair { damping, .. } if damping.abs() < 1.0)
     }
 
+    /// Its roots one by one, where they are real; else it is as it was.
+    pub fn apart(self) -> impl Iterator<Item = Self> {
+        let (first, second) = match self {
+            Self::Pair {
+                omega_rad_s,
+                damping,
+            } if damping.abs() > 1.0 => {
+                let root = damping.abs() + (damping * damping - 1.0).sqrt();
+                let real = |root_rad_s: f64| Self::Real {
+                    time_constant_s: libm::copysign(1.0 / root_rad_s, damping),
+                };
+                (real(omega_rad_s / root), Some(real(omega_rad_s * root)))
+            }
+            other => (other, None),
+        };
+        std::iter::once(first).chain(second)
+    }
+
     /// True for complex roots next to others that leave next to nothing of them: half
     /// a decibel, where they ring.
     #[must_use]
@@ -135,6 +153,17 @@ impl TransferFunction {
     #[must_use]
     pub fn denominator(&self) -> Vec<f64> {
         multiply(vec![1.0], &self.poles)
+    }
+
+    /// The same with its real roots one by one.
+    #[must_use]
+    pub fn apart(&self) -> Self {
+        let each = |list: &[Factor]| list.iter().flat_map(|factor| factor.apart()).collect();
+        Self {
+            zeros: each(&self.zeros),
+            poles: each(&self.poles),
+            ..self.clone()
+        }
     }
 
     /// By how much it makes slow signals late, s: what a recording shows of it,

@@ -4,12 +4,13 @@
 use std::env;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
+use std::ops::Range;
 
 use gwatt_identify::flexible::{self, Choice, Flexible, Method, Root};
 use gwatt_identify::{Figure, Given, Judgement, Quantity, judgement};
 
-use crate::simulated::Random;
-use crate::swinging::{FINE, Swing, Table};
+use crate::simulated::{Random, wanted};
+use crate::swinging::{FINE, Sensor, Swing, Table};
 
 /// What the tables of a cell have in common.
 struct Cell {
@@ -22,9 +23,12 @@ struct Cell {
     coulomb: f64,
     /// Delay in steps of the simulation.
     late: usize,
-    /// Steps of the encoder, m.
-    encoder: f64,
+    sensor: Sensor,
     excitation: f64,
+    /// Of the recorded force, N.
+    noise: f64,
+    /// What the drive gives at most, N.
+    limit: f64,
 }
 
 const PLAIN: Cell = Cell {
@@ -35,11 +39,13 @@ const PLAIN: Cell = Cell {
     viscous: 0.0,
     coulomb: 0.0,
     late: 0,
-    encoder: 1e-6,
+    sensor: Sensor::Position(1e-6),
     excitation: 20.0,
+    noise: 0.0,
+    limit: f64::INFINITY,
 };
 
-const CELLS: [Cell; 14] = [
+const CELLS: [Cell; 18] = [
     Cell {
         name: "10-25 Hz",
         hz: [10.0, 25.0],
@@ -52,13 +58,13 @@ const CELLS: [Cell; 14] = [
     Cell {
         name: "60-150 Hz",
         hz: [60.0, 150.0],
-        encoder: 1e-7,
+        sensor: Sensor::Position(1e-7),
         ..PLAIN
     },
     Cell {
         name: "150-300 Hz",
         hz: [150.0, 260.0],
-        encoder: 1e-7,
+        sensor: Sensor::Position(1e-7),
         ..PLAIN
     },
     Cell {
@@ -69,7 +75,7 @@ const CELLS: [Cell; 14] = [
     Cell {
         name: "damping 0.05-0.1",
         damping: [0.05, 0.1],
-        encoder: 1e-7,
+        sensor: Sensor::Position(1e-7),
         ..PLAIN
     },
     Cell {
@@ -82,7 +88,7 @@ const CELLS: [Cell; 14] = [
         name: "three",
         swings: 3,
         hz: [15.0, 35.0],
-        encoder: 1e-7,
+        sensor: Sensor::Position(1e-7),
         ..PLAIN
     },
     Cell {
@@ -117,7 +123,30 @@ const CELLS: [Cell; 14] = [
     Cell {
         name: "10 µm",
         hz: [10.0, 30.0],
-        encoder: 1e-5,
+        sensor: Sensor::Position(1e-5),
+        ..PLAIN
+    },
+    Cell {
+        name: "speed",
+        sensor: Sensor::Speed(1e-4),
+        ..PLAIN
+    },
+    Cell {
+        name: "speed, Coulomb",
+        viscous: 300.0,
+        coulomb: 25.0,
+        sensor: Sensor::Speed(1e-4),
+        ..PLAIN
+    },
+    Cell {
+        name: "mean speed",
+        sensor: Sensor::MeanSpeed(1e-6),
+        ..PLAIN
+    },
+    Cell {
+        name: "clipped and noisy",
+        noise: 0.2,
+        limit: 30.0,
         ..PLAIN
     },
 ];
@@ -148,6 +177,7 @@ impl Cell {
             viscous: self.viscous,
             coulomb: self.coulomb,
             late: self.late,
+            limit: self.limit,
         }
     }
 }
@@ -233,6 +263,20 @@ impl Sums {
         }
         if is_loud {
             println!("  {seed}: {:?}{line}", verdict.map(Judgement::word));
+            if let Some(found) = found {
+                println!(
+                    "    left {:.4}, of which {:.4} missed, energy {:.1}; white {:.2}, steady {:.2} of their limits; leak {} and {} taps",
+                    found.rel_error,
+                    found.missed_share,
+                    found.missed_energy,
+                    found.whiteness.statistic / found.whiteness.limit,
+                    found.steadiness.statistic / found.steadiness.limit,
+                    found.leak,
+                    found.noise_order,
+                );
+                let shares = figures.iter().flatten().map(|it| it.std / it.value);
+                println!("    {:.4?}", shares.collect::<Vec<_>>());
+            }
         }
     }
 
@@ -252,17 +296,22 @@ impl Sums {
     }
 }
 
-fn sums(cell: &Cell, seeds: u64) -> Sums {
+fn sums(cell: &Cell, seeds: Range<u64>) -> Sums {
     let mut sums = Sums::default();
-    for plant in 0..seeds.div_ceil(OF_ONE) {
+    for plant in seeds.start / OF_ONE..seeds.end.div_ceil(OF_ONE) {
         let table = cell.table(&mut Random(7000 + plant));
         let mut bounds = Vec::new();
-        for seed in plant * OF_ONE..seeds.min((plant + 1) * OF_ONE) {
+        let (first, end) = (plant * OF_ONE, (plant + 1) * OF_ONE);
+        for seed in seeds.start.max(first)..seeds.end.min(end) {
             let mut random = Random(100 + seed);
-            let recording = table.recorded(SAMPLES, (cell.excitation, cell.encoder), &mut random);
+            let recording = table.recorded(
+                SAMPLES,
+                (cell.excitation, cell.noise, cell.sensor),
+                &mut random,
+            );
             if bounds.is_empty() {
                 let force = recording.get(Quantity::Force).unwrap();
-                bounds = table.bounds(&force.values, cell.encoder);
+                bounds = table.bounds(&force.values, cell.sensor);
             }
             let choice = Choice {
                 method: Method::Iv,
@@ -283,20 +332,19 @@ fn least_share(all: usize) -> f64 {
 }
 
 /// In each cell figures are within two of their standard errors as often as they must be, and
-/// none is missing. `GWATT_CELL` names one cell, `GWATT_SEEDS` how many recordings,
+/// none is missing. `GWATT_CELL` names one cell, `GWATT_CASES` which recordings (as in `20..40`),
 /// `GWATT_LOUD` prints errors and standard errors of each in units of the bound.
 #[test]
 #[ignore = "minutes: cargo test --release -p gwatt-identify -- --ignored --nocapture as_sure_as"]
 fn figures_are_as_sure_as_they_say() {
-    let wanted = env::var("GWATT_CELL").ok();
-    let seeds = env::var("GWATT_SEEDS").ok();
-    let seeds = seeds.and_then(|it| it.parse().ok()).unwrap_or(60);
+    let named = env::var("GWATT_CELL").ok();
+    let seeds = wanted(60);
     let mut wrong = Vec::new();
     for cell in CELLS {
-        if wanted.as_ref().is_some_and(|name| name != cell.name) {
+        if named.as_ref().is_some_and(|name| name != cell.name) {
             continue;
         }
-        let sums = sums(&cell, seeds);
+        let sums = sums(&cell, seeds.clone());
         println!("{}", sums.line(cell.name));
         let share = sums.inside as f64 / sums.all.max(1) as f64;
         if share < least_share(sums.all) || sums.missing > 0 {

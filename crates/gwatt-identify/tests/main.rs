@@ -7,6 +7,7 @@ mod lateness;
 mod overlaid;
 mod presets;
 mod rubbing;
+mod shaken;
 mod simulated;
 mod sticking;
 mod sweep;

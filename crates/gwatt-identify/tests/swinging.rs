@@ -20,6 +20,30 @@ pub(crate) struct Swing {
     pub(crate) pole: [f64; 2],
 }
 
+/// What reads the motion, in steps of a size: m or m/s.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Sensor {
+    /// The place of each sample.
+    Position(f64),
+    /// The speed at each sample.
+    Speed(f64),
+    /// How far it went since the sample before, by the steps of a position.
+    MeanSpeed(f64),
+}
+
+impl Sensor {
+    fn step(self) -> f64 {
+        match self {
+            Self::Position(step) | Self::Speed(step) | Self::MeanSpeed(step) => step,
+        }
+    }
+
+    /// To whole steps.
+    fn read(self, x: f64) -> f64 {
+        self.step() * libm::round(x / self.step())
+    }
+}
+
 /// All of a table.
 #[derive(Debug, Clone)]
 pub(crate) struct Table {
@@ -29,6 +53,8 @@ pub(crate) struct Table {
     pub(crate) coulomb: f64,
     /// By how many steps the force acts late.
     pub(crate) late: usize,
+    /// What the drive gives at most, N.
+    pub(crate) limit: f64,
 }
 
 /// Position, speed, and two states of each swing.
@@ -105,28 +131,30 @@ impl Table {
         }
     }
 
-    /// Where forces move it that `next` gives for each sample from where it is.
-    fn moved(&self, samples: usize, mut next: impl FnMut(usize, f64) -> f64) -> [Vec<f64>; 2] {
-        let (mut forces, mut positions): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+    /// Forces that `next` gives for each sample from where it is, with the places and speeds
+    /// to which they move it.
+    fn moved(&self, samples: usize, mut next: impl FnMut(usize, f64) -> f64) -> [Vec<f64>; 3] {
+        let [mut forces, mut positions, mut speeds]: [Vec<f64>; 3] = Default::default();
         let mut state = [0.0; 8];
         for k in 0..samples {
             positions.push(state[0]);
-            forces.push(next(k, state[0]));
+            speeds.push(state[1]);
+            forces.push(next(k, state[0]).clamp(-self.limit, self.limit));
             for step in 0..FINE {
                 let acts = (k * FINE + step).checked_sub(self.late);
                 let force = acts.map_or(0.0, |at| forces[at / FINE]);
                 self.step(&mut state, force);
             }
         }
-        [forces, positions]
+        [forces, positions, speeds]
     }
 
     /// A recording to and fro by a position loop of 2 Hz, with random forces of this size
-    /// added, and what an encoder of these steps reads.
+    /// added, and what a sensor reads. The force is recorded with this much noise.
     pub(crate) fn recorded(
         &self,
         samples: usize,
-        (excitation, encoder): (f64, f64),
+        (excitation, noise, sensor): (f64, f64, Sensor),
         random: &mut Random,
     ) -> Recording {
         let (w, phase) = (TAU * 2.0, random.uniform(0.0, TAU));
@@ -137,10 +165,14 @@ impl Table {
             let slow = 0.1 * libm::sin(TAU * 0.41 * t + phase);
             t.min(1.0) * (slow + 0.03 * libm::sin(TAU * 1.13 * t))
         };
-        let read = |x: f64| encoder * libm::round(x / encoder);
+        // The loop has an encoder of its own next to a sensor of the speed.
+        let read = |x: f64| match sensor {
+            Sensor::Speed(_) => x,
+            other => other.read(x),
+        };
         let (mut before, mut speed) = (0.0, 0.0);
         let mut added = Vec::new();
-        let [force, position] = self.moved(samples, |k, x| {
+        let [mut force, position, speed] = self.moved(samples, |k, x| {
             let apart = at(k) - read(x);
             // What differences of steps would make of it is smoothed.
             speed += 0.2 * ((apart - before) / PERIOD_S - speed);
@@ -153,20 +185,34 @@ impl Table {
             added.push(sign * excitation);
             spring * apart + damper * speed + sign * excitation
         });
-        let counted = position.into_iter().map(read).collect();
-        recording(force, counted, Quantity::Position)
+        for slot in force.iter_mut().filter(|_| noise > 0.0) {
+            *slot += noise * random.normal();
+        }
+        let counted = |x: Vec<f64>| x.into_iter().map(|x| sensor.read(x)).collect::<Vec<_>>();
+        match sensor {
+            Sensor::Position(_) => recording(force, counted(position), Quantity::Position),
+            Sensor::Speed(_) => recording(force, counted(speed), Quantity::Velocity),
+            Sensor::MeanSpeed(_) => {
+                let position = counted(position);
+                let went = position.windows(2).map(|x| (x[1] - x[0]) / PERIOD_S);
+                let speed = std::iter::once(0.0).chain(went).collect();
+                recording(force, speed, Quantity::Velocity)
+            }
+        }
     }
 
     /// The least standard errors that an unbiased estimate has of the figures (Cramér and
     /// Rao), where the steps of the encoder are noise of an even distribution: the force is
     /// known, and place, speed and an offset of the force are not. A delay between samples is
     /// sought next to them.
-    pub(crate) fn bounds(&self, force: &[f64], encoder: f64) -> Vec<f64> {
+    pub(crate) fn bounds(&self, force: &[f64], sensor: Sensor) -> Vec<f64> {
         let samples = force.len();
-        let position = |table: &Self| -> Vec<f64> {
-            let [_, position] = table.moved(samples, |k, _| force[k]);
-            position
+        let is_speed = matches!(sensor, Sensor::Speed(_));
+        let pushed = |table: &Self, more: f64| -> Vec<f64> {
+            let [_, position, speed] = table.moved(samples, |k, _| force[k] + more);
+            if is_speed { speed } else { position }
         };
+        let position = |table: &Self| pushed(table, 0.0);
         let figures = self.figures();
         let mut columns: Vec<Vec<f64>> = Vec::new();
         let slope = |above: &Self, below: &Self, by: f64| -> Vec<f64> {
@@ -184,10 +230,11 @@ impl Table {
         }
         let n = samples as f64;
         columns.push(vec![1.0; samples]);
-        columns.push((0..samples).map(|k| k as f64 / n).collect());
-        let [_, pushed] = self.moved(samples, |k, _| force[k] + 1e-3);
-        let plain = position(self);
-        columns.push(pushed.iter().zip(&plain).map(|(a, b)| a - b).collect());
+        if !is_speed {
+            columns.push((0..samples).map(|k| k as f64 / n).collect());
+        }
+        let (more, plain) = (pushed(self, 1e-3), position(self));
+        columns.push(more.iter().zip(&plain).map(|(a, b)| a - b).collect());
         if !self.late.is_multiple_of(FINE) {
             let late = |late: usize| Self {
                 late,
@@ -204,7 +251,7 @@ impl Table {
             columns[column][row] / sizes[column]
         });
         let r = matrix.qr().r();
-        let noise = encoder / 12.0_f64.sqrt();
+        let noise = sensor.step() / 12.0_f64.sqrt();
         let inverse = r.try_inverse().unwrap();
         (0..figures.len())
             .map(|index| {

@@ -118,7 +118,13 @@ impl Foreseen {
         let signals = Signals::filtered(&held, |x| whitened(x, taps));
         let white = signals.data(&held);
         let is_late = known.transfer.delay_s > 0.0;
-        let normal = gather(&white, &known.transfer, is_late, taps.len() + data.skip())?;
+        let normal = gather(
+            &white,
+            &known.transfer,
+            is_late,
+            taps.len() + data.skip(),
+            &[],
+        )?;
         let solution = normal.solve().or_else(|| normal.solve_from(0, 1e-12))?;
         let noise = known.noise_std.unwrap_or_else(|| NOISE_SHARE * rms(accel));
         let std = |index: usize| {
