@@ -12,7 +12,7 @@ use super::hole::Placed;
 use super::number::{decimal, rounded, rounded_finely, with_blanks};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Action, ActionKind, Corner, FeedMode, Modal, Motion, Move, MoveKind, Step};
-use crate::machine::{ALL_AXES, AXES, AxisId, AxisValues, Language, Lathe, Machine};
+use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues, Language, Lathe, Machine};
 use crate::source::{Span, split_line_end};
 use crate::syntax::{Block, Word};
 use crate::units::SECONDS_PER_MINUTE;
@@ -246,6 +246,31 @@ impl<'m> Singles<'m> {
         }
     }
 
+    /// Which axes a way across says though they stand: those of the block, which say the place of
+    /// a hole wherever the one before it is, since that may be skipped.
+    fn says_place(
+        &self,
+        mv: &Move,
+        of: &CycleBlock<'_>,
+        from: &AxisValues,
+        to: &AxisValues,
+    ) -> AxisSet {
+        let [first, second, _] = of.modal.plane;
+        let milling = self.language.dialect.lathe.is_none();
+        let rapid = milling && mv.kind == MoveKind::Rapid && of.modal.absolute;
+        let across = rapid && [first, second].iter().any(|axis| from[*axis] != to[*axis]);
+        let mut said = AxisSet::default();
+        for axis in ALL_AXES.into_iter().filter(|_| across) {
+            let index = axis as usize;
+            let mut words = of.block.words.iter();
+            let named = words.any(|word| word.letter == axis.letter());
+            if named && [first, second].contains(&index) {
+                said.insert(index);
+            }
+        }
+        said
+    }
+
     pub(super) fn one_move(
         &self,
         mv: &Move,
@@ -282,24 +307,12 @@ impl<'m> Singles<'m> {
         };
         let end = place(&mv.end).map(lines.round);
         let mut words = word.to_owned();
-        // The place of a hole is said as the block says it, wherever the one before it is: it
-        // may be skipped.
-        let [first, second, _] = of.modal.plane;
-        let rapid = mv.kind == MoveKind::Rapid && of.modal.absolute;
-        let across = rapid
-            && [first, second]
-                .iter()
-                .any(|axis| lines.at[*axis] != end[*axis]);
-        let named = |axis: AxisId| {
-            let in_plane = [first, second].contains(&(axis as usize));
-            let mut all = of.block.words.iter();
-            in_plane && all.any(|word| word.letter == axis.letter())
-        };
+        let says = self.says_place(mv, of, &lines.at, &end);
         let mut moves = false;
         for axis in ALL_AXES {
             let index = axis as usize;
             let (from, to) = (lines.at[index], end[index]);
-            if from == to && !(across && named(axis)) {
+            if from == to && !says.contains(index) {
                 continue;
             }
             moves |= from != to;

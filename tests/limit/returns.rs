@@ -113,7 +113,7 @@ fn further_offsets_are_known_too() {
         let program = program.replace("G154", word);
         let text = shop.limited(&program, "--allow feed");
         assert_eq!(ends(&shop, &program, ""), ends(&shop, &text, ""));
-        assert!(text.contains("Z300. F"), "{text}");
+        assert!(text.contains("G1 Z300."), "{text}");
     }
 }
 

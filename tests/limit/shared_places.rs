@@ -39,7 +39,7 @@ fn blocks_take_the_place_of_each_call() {
     G81 G99 X0. R40. Z-12. (EDGE)
     G80
     G0 X500. Z50.
-    G0 Y0.
+    G0 X500. Y0.
     G99 G83 X500. Y0. Z-20. R40. Q30. F100.
     (M98 P100 written out)
     G0 X400. Y300.
@@ -70,7 +70,7 @@ fn blocks_take_the_place_of_each_call() {
     G81 G99 X0. R40. Z-12. (EDGE)
     G80
     G0 X500. Z50.
-    G0 Y0.
+    G0 X500. Y0.
     G99 G83 X500. Y0. Z-20. R40. Q30. F100.
     (M97 P10 written out)
     G0 X400. Y300.
@@ -105,7 +105,7 @@ fn places_may_stand_in_a_file() {
     G81 G99 X0. R40. Z-12. (EDGE)
     G80
     G0 X500. Z50.
-    G0 Y0.
+    G0 X500. Y0.
     G99 G83 X500. Y0. Z-20. R40. Q30. F100.
     (M98 P100 written out)
     G0 X400. Y300.
@@ -144,7 +144,7 @@ fn a_subroutine_of_linuxcnc() {
     G99 G82 X0 Y300 Z-14 R40 P1
     (o100 call written out)
     G4 P0
-    G0 X400.
+    G0 X400. Y300.
     G4 P0
     G82 X400 Y300 P1 R40 Z-14
     G4 P0

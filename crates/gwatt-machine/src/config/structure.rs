@@ -44,7 +44,9 @@ impl<'a, 'f> Structure<'a, 'f> {
         for (key, mut value) in std::mem::replace(table, DeTable::new()) {
             let name = key.get_ref().as_ref();
             let here = join(path, name);
-            let fits = if let Some(schema) = known.get(name) {
+            // Of a table whose keys are free the values are known.
+            let free = Some(&schema["additionalProperties"]).filter(|it| it.is_object());
+            let fits = if let Some(schema) = known.get(name).or(free) {
                 self.value(&mut value, schema, name, &here)
             } else {
                 self.unknown(name, &key.span(), known, path);
