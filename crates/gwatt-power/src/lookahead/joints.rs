@@ -12,7 +12,7 @@ use gwatt_plan::lookahead::{Piece, Planned};
 use std::ops::RangeInclusive;
 
 /// The moves that a piece belongs to.
-fn moves_of(planned: &Planned<u64>) -> RangeInclusive<u64> {
+pub(super) fn moves_of(planned: &Planned<u64>) -> RangeInclusive<u64> {
     planned.first..=planned.next.unwrap_or(planned.tag)
 }
 

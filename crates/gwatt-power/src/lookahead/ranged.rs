@@ -1,7 +1,9 @@
-//! Pieces of a plan that may run slower, as how many blocks the controller sees is a matter of timing:
-//! each may be sped up and braked at any speed up to its own.
+//! Pieces of a plan that may run slower, as how many blocks the controller sees is a matter of timing,
+//! or as the motion may have stopped before them: each may be sped up and braked at any speed up to
+//! its own.
 
 use super::Ahead;
+use super::joints::moves_of;
 use crate::demand::{Demand, Want};
 use crate::model::PowerModel;
 use crate::observer::Observer;
@@ -17,7 +19,11 @@ impl Ahead {
         observer: &Observer,
         planned: &Planned<u64>,
     ) -> Option<Demand> {
-        if !planned.ranged {
+        let in_doubt = |number| self.open.get(number).is_some_and(|own| own.in_doubt);
+        // S-curves have the robust bound, of axes that keep their limits at joints too.
+        let slower =
+            planned.section.is_none() && (self.reach2.is_some() || moves_of(planned).any(in_doubt));
+        if !(planned.ranged || slower) {
             return None;
         }
         let speed_mm_s = planned.top_speed_mm_s();
