@@ -257,8 +257,10 @@ pub fn flexible(axis: &Flexible) -> Judgement {
         longer(damping.max(frequency))
     };
     // Where errors are those of what the model misses, a longer recording has them too. Nor
-    // does it show how an axis sticks that is seen by its positions alone.
-    let sticks = axis.coulomb.is_some() && axis.measured.integrators() > 1;
+    // does it show how an axis sticks that is seen by its positions alone, of which its modes
+    // have a part.
+    let swings = !(axis.zeros.is_empty() && axis.poles.is_empty());
+    let sticks = swings && axis.coulomb.is_some() && axis.measured.integrators() > 1;
     let misses = verdict != Judgement::Good && axis.missed_energy > 1.0;
     if misses || verdict == Judgement::Good && sticks {
         return Judgement::MoreThanNoise;
