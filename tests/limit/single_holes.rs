@@ -54,6 +54,28 @@ fn rigid_taps_are_announced_again() {
     ");
 }
 
+/// A tap that has to change no way is announced again too, where one before it, of the same M29, has
+/// ended that: the way back to the level of G98 is a block of its own.
+#[test]
+fn no_rigid_tap_becomes_another() {
+    let program = "G21 G90 G54\nG0 X0. Y0. Z100.\nM29 S300\nG98 G84 X400. Y300. Z-12. R5. F300.\n\
+                   G84 X400. Y301. Z-12. R98. F300.\nX410. K2\nG80\nG1 X50.\nM30\n";
+    let shop = Shop::mill(
+        "fanuc",
+        "peak_power_w = 300",
+        "[path]\nrapid = \"linear\"",
+        "",
+    );
+    let (code, _, errors) = shop.limit(program, "--allow feed,expand");
+    assert!(code == 1 && errors.contains("it taps"), "{errors}");
+    let text = shop.limited(&program.replace("X410. K2\n", ""), "--allow feed,expand");
+    same_moves(&shop, &text);
+    let lines: Vec<&str> = text.lines().collect();
+    let taps = lines.windows(2).filter(|pair| pair[1].contains("G84"));
+    let announced = taps.clone().filter(|pair| pair[0] == "M29 S300");
+    assert_eq!((taps.count(), announced.count()), (2, 2), "{text}");
+}
+
 /// The way to a hole that may be skipped is skipped with it.
 #[test]
 fn a_hole_that_may_be_skipped() {

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::io::Cursor;
 
+use super::rigid::TAPS;
 use crate::interpret::{ActionKind, Arc, Corner, FeedMode, Move, MoveKind, Step};
 use crate::machine::Machine;
 use crate::pipeline::executor::Executor;
@@ -26,6 +27,8 @@ pub(super) fn first_difference(
     let [mut own, mut other] = [original, written].map(|text| Steps {
         front: Executor::new(Cursor::new(text), machine, options),
         waiting: VecDeque::new(),
+        rigid: false,
+        tap: None,
         line: 0,
     });
     let (_, stop_s) = machine.controller.language.shortest_dwell();
@@ -43,6 +46,9 @@ pub(super) fn first_difference(
         };
         match (&original, &step) {
             (Step::Move(a), Step::Move(b)) if same_move(a, b) => {
+                if own.tap.zip(other.tap).is_some_and(|(a, b)| a != b) {
+                    return Ok(Some(other.line));
+                }
                 let blends = b.moves_axes() && !same_joint(a, b);
                 if blends && !(a.corner == Corner::Exact && stands) || must_stand && b.moves_axes()
                 {
@@ -70,6 +76,10 @@ pub(super) fn first_difference(
 struct Steps<'p, 'm> {
     front: Executor<'m, Cursor<&'p [u8]>>,
     waiting: VecDeque<Step>,
+    /// No other motion has come since rigid tapping was announced (M29).
+    rigid: bool,
+    /// Whether the tap that is made is rigid.
+    tap: Option<bool>,
     line: u64,
 }
 
@@ -83,14 +93,23 @@ impl Steps<'_, '_> {
                 return Ok(None);
             };
             self.line = line.key.1;
-            if line.facts.announces_tap {
-                // It stands before each tap whose way is gone before it.
-                continue;
+            let facts = &*line.facts;
+            let others = || facts.motion_word.is_some() || line.steps.iter().any(Step::moves_axes);
+            if facts.announces_tap {
+                self.rigid = true;
+            } else if !facts.cycle && others() {
+                self.rigid = false;
             }
+            let taps = facts.cycle && TAPS.contains(&line.interpreter.cycle());
+            self.tap = taps.then_some(self.rigid);
+            // The word that announces taps comes again where their ways are gone before them.
+            let announces = facts.announces_tap;
             let counts = |step: &Step| match step {
                 Step::Move(mv) => mv.length_mm > ROUNDING_MM || mv.kind == MoveKind::Dwell,
                 // The moves themselves show them.
-                Step::Action(action) => !step.is_note() && action.kind != ActionKind::PathMode,
+                Step::Action(action) => {
+                    !(announces || step.is_note() || action.kind == ActionKind::PathMode)
+                }
             };
             self.waiting.extend(line.steps.drain(..).filter(counts));
         }

@@ -4,6 +4,9 @@ use crate::pipeline::executor::Line;
 use crate::rewrite::Placed;
 use crate::syntax::Word;
 
+/// Tapping cycles, times ten.
+pub(super) const TAPS: [u16; 2] = [740, 840];
+
 /// A block that lets the taps after it be rigid, until another motion word ends that. It
 /// stands directly before the tap.
 #[derive(Debug, Clone)]
@@ -14,7 +17,7 @@ pub(super) struct Rigid {
     /// The same without its number.
     again: Vec<u8>,
     /// Nothing has come after it.
-    last: bool,
+    pub(super) last: bool,
 }
 
 impl Rigid {
@@ -42,14 +45,6 @@ impl Rigid {
         }
         (placed.around(&self.again), None)
     }
-
-    /// A block that stays, after others whose ways have ended what lets it be rigid.
-    pub(super) fn before(rigid: Option<&Self>, block: Vec<u8>) -> Vec<u8> {
-        match rigid {
-            Some(rigid) if !rigid.last => [rigid.again.clone(), block].concat(),
-            _ => block,
-        }
-    }
 }
 
 /// Whether the taps that come next are rigid.
@@ -69,6 +64,11 @@ impl Tapping {
         } else if let Some(by) = self.by.as_mut().filter(|_| line.facts.executed) {
             by.last = false;
         }
+    }
+
+    /// Whether taps before the next one are rigid by the same word, so that they change together.
+    pub(super) fn goes_on(&self) -> bool {
+        self.rigid && !self.by.as_ref().is_some_and(|by| by.last)
     }
 
     /// A block of a cycle: what lets it be rigid.

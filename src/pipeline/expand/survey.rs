@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::io::Cursor;
 
-use super::rigid::{Rigid, Tapping};
+use super::rigid::{Rigid, TAPS, Tapping};
 use super::series::Series;
 use super::way::Asked;
 use super::{called, returns, turning};
@@ -117,8 +117,9 @@ fn take_in(
     let n_word = line.block.number.map(|word| word.value);
     series.numbers.insert(number, n_word);
     let again = singles.restated(cycle, &series.held, to_r);
-    let again = again.filter(|_| !line.facts.checksum);
-    let again = again.map(|again| Rigid::before(rigid, again));
+    // Whether a tap that stays is rigid there depends on the ones before it.
+    let follows = rigid.is_some_and(|rigid| !rigid.last);
+    let again = again.filter(|_| !line.facts.checksum && !follows);
     series.restate(number, again.as_ref());
     if let Some(why) = fixed {
         return series.refuse(number, why);
@@ -239,10 +240,11 @@ impl Surveyor<'_, '_, '_> {
             return;
         }
         // A block that says all of a cycle depends on none before it, save that increments
-        // begin at the level of the first.
+        // begin at the level of the first, and rigid taps on the word for the first.
         let has = |letter| line.block.words.iter().any(|word| word.letter == letter);
         let says_all = facts.motion_word.is_some() && has(b'R') && has(b'Z');
-        if !lathe && says_all && interpreter.modal().absolute {
+        let alone = says_all && interpreter.modal().absolute && !self.tapping.goes_on();
+        if !lathe && alone {
             self.close();
         }
         let series = self.open.get_or_insert_default();
@@ -314,8 +316,6 @@ fn turning_word(block: &Block) -> Option<Word> {
     block.words.iter().find(turning).copied()
 }
 
-/// Tapping cycles, times ten.
-const TAPS: [u16; 2] = [740, 840];
 /// Why nothing is written in another way where places could mean something else then.
 const WITHOUT_POINT: &str = "numbers of the program have no decimal point, and what they mean is \
      not known: say decimal_point under [language] of the machine file";
