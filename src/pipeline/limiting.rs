@@ -9,7 +9,7 @@ use super::conclusion::holds_one_way;
 use super::derate::{aim_lower, lower_further, missed_narrowly};
 use super::executor::read_whole;
 use super::expand::{
-    Asked as Lines, NOT_WRITTEN_OUT, OriginalRows, Traced, Way, expand, explain, in_fixed_blocks,
+    LineWays, NOT_WRITTEN_OUT, OriginalRows, Traced, Way, expand, explain, in_fixed_blocks,
 };
 use super::pace::{by_acceleration, sooner};
 use super::pause::limit_waiting;
@@ -218,7 +218,7 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
             Some(&mut original),
         )?;
     }
-    let mut ways = Lines::default();
+    let mut ways = LineWays::default();
     let mut last: Option<LimitSummary> = None;
     for way in [
         Way::Placed,
@@ -232,7 +232,7 @@ fn limit_expanded<R: Read + Seek + Send, W: Write + Restart + Send>(
         }
         let all = refused.reasons.len() >= Summary::KEPT;
         let before = ways.clone();
-        ways.all(all.then_some(way));
+        ways.set_all(all.then_some(way));
         ways.extend(&refused.reasons, way);
         if ways == before {
             break;

@@ -24,8 +24,9 @@ pub struct CalledBlock<'a> {
 }
 
 impl CalledBlock<'_> {
-    /// The block without its number, its label and its part in the order of execution; `None`
-    /// where nothing of it is left to do.
+    /// The block without its number, its label and its part in the order of execution; its comment
+    /// alone where nothing of it is left to do, since some controls act on comments. `None`: it
+    /// has none.
     ///
     /// # Errors
     /// Why it cannot stand in another place.
@@ -33,7 +34,7 @@ impl CalledBlock<'_> {
         let Block { words, issues, .. } = self.block;
         match self.passage {
             Passage::Other => return Err("a branch, a loop or a macro"),
-            Passage::Call if self.only_passes() => return Ok(None),
+            Passage::Call if self.only_passes() => return Ok(self.comment_alone()),
             Passage::Call => return Err("a call with other words in its block"),
             Passage::Edge if !issues.is_empty() && !words.is_empty() => {
                 return Err("a return with other words in its block");
@@ -52,7 +53,7 @@ impl CalledBlock<'_> {
             || statement.is_empty()
             || begins_subprogram(statement);
         if passes && self.only_passes() {
-            return Ok(None);
+            return Ok(self.comment_alone());
         }
         // What is worked out may be worked out from values of the subprogram itself.
         if code.iter().any(|byte| b"#=[$<\"".contains(byte)) {
@@ -114,6 +115,14 @@ impl CalledBlock<'_> {
         }
         out.extend_from_slice(if line_end.is_empty() { b"\n" } else { line_end });
         Ok(out)
+    }
+
+    /// Its comments on a line of their own.
+    fn comment_alone(&self) -> Option<Vec<u8>> {
+        let (text, line_end) = split_line_end(self.text);
+        let comment = text[self.comment()..].trim_ascii_end();
+        let end = if line_end.is_empty() { b"\n" } else { line_end };
+        (!comment.is_empty()).then(|| [comment, end].concat())
     }
 
     /// Where its first comment begins, or its end.

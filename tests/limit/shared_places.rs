@@ -6,13 +6,14 @@ use super::same_moves::same_moves;
 use crate::shop::Shop;
 
 /// Rapids of one axis fit, those of two do not.
-fn shop(controller: &str) -> Shop {
+pub(super) fn shop(controller: &str) -> Shop {
     let converter = "peak_power_w = 600";
     Shop::mill(controller, converter, "[path]\nrapid = \"linear\"", "")
 }
 
+/// What `limit` writes, which goes to the same places.
 #[track_caller]
-fn limited(shop: &Shop, program: &str) -> String {
+pub(super) fn limited(shop: &Shop, program: &str) -> String {
     let text = shop.limited(program, "--allow feed");
     same_moves(shop, &text);
     text
@@ -21,7 +22,7 @@ fn limited(shop: &Shop, program: &str) -> String {
 const TWO_CYCLES: &str = "O1\nG21 G90 G54\nG0 X0. Y0. Z50.\nG99 G81 Z-12. R40. F200. L0\n\
                           N50 M98 P100 (BOTH)\nG80\nG0 X500. Z50.\n\
                           G99 G83 X500. Y0. Z-20. R40. Q30. F100.\nM98 P100\nG80\nM30\n\
-                          O100\nN10 X400. Y300.\nX0. (EDGE)\nM99\n";
+                          O100 (HOLES)\nN10 X400. Y300.\nX0. (EDGE)\nM99\n";
 
 #[test]
 fn blocks_take_the_place_of_each_call() {
@@ -31,6 +32,7 @@ fn blocks_take_the_place_of_each_call() {
     G0 X0. Y0. Z50.
     G99 G81 Z-12. R40. F200. L0
     N50 (M98 P100 written out) (BOTH)
+    (HOLES)
     G4 P1
     G9 G1 X400. Y300. F26966.
     G0 F200.
@@ -42,20 +44,21 @@ fn blocks_take_the_place_of_each_call() {
     G0 X500. Y0.
     G99 G83 X500. Y0. Z-20. R40. Q30. F100.
     (M98 P100 written out)
+    (HOLES)
     G0 X400. Y300.
     G83 G99 X400. Y300. Q30. R40. Z-20.
     G0 X0.
     G83 G99 X0. Q30. R40. Z-20. (EDGE)
     G80
     M30
-    O100
+    O100 (HOLES)
     N10 X400. Y300.
     X0. (EDGE)
     M99
     ");
     let local = TWO_CYCLES
         .replace("M98 P100", "M97 P10")
-        .replace("O100\n", "");
+        .replace("O100 (HOLES)\n", "");
     assert_snapshot!(limited(&shop("haas"), &local), @r"
     O1
     G21 G90 G54
@@ -97,6 +100,7 @@ fn places_may_stand_in_a_file() {
     G0 X0. Y0. Z50.
     G99 G81 Z-12. R40. F200. L0
     N50 (M98 P100 written out) (BOTH)
+    (HOLES)
     G4 P1
     G9 G1 X400. Y300. F26966.
     G0 F200.
@@ -108,6 +112,7 @@ fn places_may_stand_in_a_file() {
     G0 X500. Y0.
     G99 G83 X500. Y0. Z-20. R40. Q30. F100.
     (M98 P100 written out)
+    (HOLES)
     G0 X400. Y300.
     G83 G99 X400. Y300. Q30. R40. Z-20.
     G0 X0.

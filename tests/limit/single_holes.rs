@@ -4,20 +4,8 @@
 use insta::assert_snapshot;
 
 use super::same_moves::same_moves;
+use super::shared_places::{limited, shop};
 use crate::shop::Shop;
-
-/// Rapids of one axis fit, those of two do not.
-fn shop(controller: &str) -> Shop {
-    let converter = "peak_power_w = 600";
-    Shop::mill(controller, converter, "[path]\nrapid = \"linear\"", "")
-}
-
-#[track_caller]
-fn limited(shop: &Shop, program: &str) -> String {
-    let text = shop.limited(program, "--allow feed");
-    same_moves(shop, &text);
-    text
-}
 
 /// Any motion word ends rigid tapping: M29 comes again before each tap whose way is gone by
 /// itself, and nothing comes between the two.

@@ -3,15 +3,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::in_place::InPlace;
+use super::origins::Origins;
 use crate::source::lines;
 
 /// A program with cycles written out.
 pub(in crate::pipeline) struct Expanded {
     pub(in crate::pipeline) text: Vec<u8>,
-    /// For each of its lines the one that it was, from 1, before cycles were written out.
-    before: Vec<u64>,
-    /// The same, of the original.
-    origins: Vec<u64>,
+    /// What its lines were before cycles were written out.
+    before: Origins,
+    /// The same, in the original.
+    origins: Origins,
     /// Lines of the original that no longer stand as they were, or not in their place alone.
     moved: BTreeSet<u64>,
     /// N words of the blocks that were written in another way, by line of the original.
@@ -29,8 +30,8 @@ impl Expanded {
     ) -> Self {
         let mut expanded = Self {
             text: Vec::with_capacity(text.len() + text.len() / 4),
-            before: Vec::new(),
-            origins: Vec::new(),
+            before: Origins::default(),
+            origins: Origins::default(),
             moved: placed.map_or_else(BTreeSet::new, |placed| placed.moved.clone()),
             n_words: n_words.clone(),
             blocks: written.len() + placed.map_or(0, InPlace::calls),
@@ -40,8 +41,8 @@ impl Expanded {
             let origin = placed.map_or(number, |placed| placed.origin(number));
             expanded.text.extend_from_slice(bytes);
             let count = lines(bytes).count();
-            expanded.before.extend(std::iter::repeat_n(number, count));
-            expanded.origins.extend(std::iter::repeat_n(origin, count));
+            expanded.before.push(number, count);
+            expanded.origins.push(origin, count);
             if count > 1 {
                 expanded.moved.insert(origin);
             }
@@ -51,12 +52,12 @@ impl Expanded {
 
     /// The line of the original that a line comes from; 0 stays 0.
     pub(in crate::pipeline) fn origin(&self, line: u64) -> u64 {
-        in_table(&self.origins, line)
+        self.origins.of(line)
     }
 
     /// What a line was before cycles were written out.
     pub(super) fn line_before(&self, line: u64) -> u64 {
-        in_table(&self.before, line)
+        self.before.of(line)
     }
 
     /// Whether a line of the original stands as it was.
@@ -68,10 +69,4 @@ impl Expanded {
     pub(super) fn n_word(&self, line: u64) -> Option<f64> {
         self.n_words.get(&line).copied()
     }
-}
-
-fn in_table(table: &[u64], line: u64) -> u64 {
-    let index = line.checked_sub(1).map(|index| index as usize);
-    let found = index.and_then(|index| table.get(index));
-    found.copied().unwrap_or(line)
 }

@@ -10,7 +10,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
 use std::ops::Range;
 
-use super::way::{Asked, Way};
+use super::origins::Origins;
+use super::way::{LineWays, Way};
 use crate::interpret::Passage;
 use crate::machine::Machine;
 use crate::pipeline::executor::{Executor, Line};
@@ -24,8 +25,7 @@ const LINES_MAX: usize = 10_000;
 /// A program in which blocks stand in place of calls.
 pub(super) struct InPlace {
     pub(super) text: Vec<u8>,
-    /// For each of its lines the line of the original that it comes from, from 1.
-    origins: Vec<u64>,
+    origins: Origins,
     /// Those of its lines that come from files of subprograms, with the places there.
     in_files: BTreeMap<u64, Place>,
     /// Lines of the original that these calls ran, and the calls.
@@ -39,7 +39,7 @@ impl InPlace {
     pub(super) fn new(program: &[u8], calls: &BTreeMap<u64, &[CalledLine]>) -> Self {
         let mut placed = Self {
             text: Vec::with_capacity(program.len() + program.len() / 4),
-            origins: Vec::new(),
+            origins: Origins::default(),
             in_files: BTreeMap::new(),
             moved: BTreeSet::new(),
             calls: BTreeMap::new(),
@@ -47,23 +47,23 @@ impl InPlace {
         for (number, text) in (1..).zip(lines(program)) {
             let Some(call) = calls.get(&number) else {
                 placed.text.extend_from_slice(text);
-                placed.origins.push(number);
+                placed.origins.push(number, 1);
                 continue;
             };
-            let first = placed.origins.len() as u64 + 1;
+            let first = placed.origins.len() + 1;
             for line in *call {
                 // What is said of a file is said of the call.
                 let (file, own) = &line.place;
                 let origin = if file.is_some() { number } else { *own };
                 placed.text.extend_from_slice(&line.bytes);
-                placed.origins.push(origin);
+                placed.origins.push(origin, 1);
                 placed.moved.insert(origin);
                 if file.is_some() {
-                    let here = placed.origins.len() as u64;
+                    let here = placed.origins.len();
                     placed.in_files.insert(here, line.place.clone());
                 }
             }
-            let next = placed.origins.len() as u64 + 1;
+            let next = placed.origins.len() + 1;
             placed.calls.insert(number, first..next);
         }
         placed
@@ -71,13 +71,11 @@ impl InPlace {
 
     /// The line of the original that a line comes from; 0 stays 0.
     pub(super) fn origin(&self, line: u64) -> u64 {
-        let index = line.checked_sub(1).map(|index| index as usize);
-        let origin = index.and_then(|index| self.origins.get(index));
-        origin.copied().unwrap_or(line)
+        self.origins.of(line)
     }
 
     /// How a line is asked to be written.
-    pub(super) fn way(&self, asked: &Asked, line: u64) -> Option<Way> {
+    pub(super) fn way(&self, asked: &LineWays, line: u64) -> Option<Way> {
         match self.in_files.get(&line) {
             Some((file, line)) => asked.way(file.as_deref(), *line),
             None => asked.way(None, self.origin(line)),
@@ -118,7 +116,7 @@ pub(super) struct Call {
 
 impl Call {
     /// Whether it runs one of the lines that are asked for, or of these.
-    pub(super) fn runs(&self, asked: &Asked, others: &BTreeSet<u64>) -> bool {
+    pub(super) fn runs(&self, asked: &LineWays, others: &BTreeSet<u64>) -> bool {
         let is_asked = |(file, line): &Place| asked.way(file.as_deref(), *line).is_some();
         self.runs.iter().any(is_asked) || self.lines_here().any(|line| others.contains(&line))
     }

@@ -14,11 +14,17 @@ pub(in crate::pipeline) const NOT_WRITTEN_OUT: &str = "not-written-out";
 #[derive(Default)]
 pub(super) struct Notes {
     pub(super) list: Vec<Diagnostic>,
+    /// Why blocks that run at several calls do not take the place of these, by their lines.
+    pub(super) not_in_place: BTreeMap<u64, &'static str>,
 }
 
 impl Notes {
     pub(super) fn stays(&mut self, line: u64, what: &str, why: &str, program: &[u8]) {
-        let message = format!("{what}: {why}");
+        let mut message = format!("{what}: {why}");
+        if let Some(more) = self.not_in_place.get(&line).filter(|_| why == EACH_TIME) {
+            message += ", and what keeps its blocks from the place of the call is ";
+            message += more;
+        }
         let said = |note: &Diagnostic| note.line == line && note.message == message;
         if self.list.iter().any(said) {
             return;
@@ -30,20 +36,6 @@ impl Notes {
         let span = Span::new(0, split_line_end(text).0.len());
         self.list
             .push(Diagnostic::note(NOT_WRITTEN_OUT, message).at(line, span, text));
-    }
-}
-
-/// Says of places at which several cycles drill why their blocks do not take the place of the
-/// calls: `whys` has that by line.
-pub(super) fn say_why_not_in_place(notes: &mut [Diagnostic], whys: &BTreeMap<u64, &str>) {
-    for note in notes
-        .iter_mut()
-        .filter(|note| note.message.ends_with(EACH_TIME))
-    {
-        if let Some(why) = whys.get(&note.line) {
-            let blocks = ", and what keeps its blocks from the place of the call is";
-            note.message = format!("{}{blocks} {why}", note.message);
-        }
     }
 }
 

@@ -14,6 +14,7 @@ mod compare;
 mod expanded;
 mod in_place;
 mod kept;
+mod origins;
 mod returns;
 mod rigid;
 mod series;
@@ -26,6 +27,7 @@ mod write;
 use std::collections::BTreeMap;
 
 use in_place::InPlace;
+use kept::Notes;
 use survey::Survey;
 use write::{Written, write};
 
@@ -33,7 +35,7 @@ use super::{Failure, LimitSummary, Options, Summary};
 pub(super) use expanded::Expanded;
 pub(super) use kept::{NOT_WRITTEN_OUT, explain};
 pub(super) use trace::{OriginalRows, Traced, WRITTEN_OUT};
-pub(super) use way::{Asked, Way};
+pub(super) use way::{LineWays, Way};
 
 use crate::diagnostic::Diagnostic;
 use crate::limit::{NO_KNOB, UNTOUCHABLE};
@@ -53,13 +55,13 @@ pub(super) fn expand(
     program: &[u8],
     machine: &Machine,
     paths: &[Options],
-    asked: &Asked,
+    asked: &LineWays,
 ) -> Result<(Option<Expanded>, Vec<Diagnostic>), Failure> {
     let survey = Survey::of(program, machine, paths)?;
-    let mut whys = BTreeMap::new();
-    if survey.shares_places(asked) {
+    let mut notes = Notes::default();
+    let differing = survey.lines_that_differ(asked);
+    if !differing.is_empty() || survey.drills_in_files(asked) {
         let calls = in_place::calls(program, machine, paths)?;
-        let differing = survey.lines_that_differ(asked);
         let wanted = calls
             .iter()
             .filter(|(_, call)| call.runs(asked, &differing));
@@ -70,14 +72,15 @@ pub(super) fn expand(
                     chosen.insert(*line, lines.as_slice());
                 }
                 Err(why) => call.lines_here().for_each(|it| {
-                    whys.insert(it, *why);
+                    notes.not_in_place.insert(it, *why);
                 }),
             }
         }
         while !chosen.is_empty() {
             let placed = InPlace::new(program, &chosen);
             let survey = Survey::of(&placed.text, machine, paths)?;
-            let (written, notes) = write(survey, machine, paths, asked, (program, Some(&placed)))?;
+            let texts = (program, Some(&placed));
+            let (written, notes) = write(survey, machine, paths, asked, texts, Notes::default())?;
             let count = chosen.len();
             // A call stays where nothing of what it runs is written in another way.
             chosen.retain(|call, _| placed.holds_any(*call, &written.lines));
@@ -86,8 +89,7 @@ pub(super) fn expand(
             }
         }
     }
-    let (Written { expanded, .. }, mut notes) =
-        write(survey, machine, paths, asked, (program, None))?;
-    kept::say_why_not_in_place(&mut notes, &whys);
+    let (Written { expanded, .. }, notes) =
+        write(survey, machine, paths, asked, (program, None), notes)?;
     Ok((expanded, notes))
 }

@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 use super::rigid::{Rigid, TAPS, Tapping};
 use super::series::Series;
-use super::way::Asked;
+use super::way::LineWays;
 use super::{called, returns, turning};
 use crate::interpret::{NO_POINT, Step};
 use crate::machine::Machine;
@@ -46,15 +46,14 @@ impl Survey {
         Ok(survey)
     }
 
-    /// Whether places that are asked for stand in a file, or have another cycle each time.
-    pub(super) fn shares_places(&self, asked: &Asked) -> bool {
+    /// Whether places that are asked for stand in a file.
+    pub(super) fn drills_in_files(&self, asked: &LineWays) -> bool {
         let mut in_files = self.in_files.iter();
         in_files.any(|(file, line)| asked.way(Some(file), *line).is_some())
-            || !self.lines_that_differ(asked).is_empty()
     }
 
     /// The lines of series that are asked for and do something else each time they run.
-    pub(super) fn lines_that_differ(&self, asked: &Asked) -> BTreeSet<u64> {
+    pub(super) fn lines_that_differ(&self, asked: &LineWays) -> BTreeSet<u64> {
         let asks = |series: &&Series| {
             let mut lines = series.numbers.keys();
             series.differs() && lines.any(|line| asked.way(None, *line).is_some())

@@ -15,14 +15,14 @@ pub(in crate::pipeline) enum Way {
 
 /// Lines that are asked to be written in another way.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(in crate::pipeline) struct Asked {
+pub(in crate::pipeline) struct LineWays {
     /// All of the program and its files.
     all: Option<Way>,
     /// Of the program itself, and of files of subprograms by their names.
     lines: BTreeMap<(Option<String>, u64), Way>,
 }
 
-impl Asked {
+impl LineWays {
     /// Asks for the lines of these reasons.
     pub(in crate::pipeline) fn extend(&mut self, reasons: &[Diagnostic], way: Way) {
         let lines = reasons.iter().map(|it| ((it.file.clone(), it.line), way));
@@ -30,7 +30,7 @@ impl Asked {
     }
 
     /// The same for all lines, or for none but those.
-    pub(in crate::pipeline) fn all(&mut self, way: Option<Way>) {
+    pub(in crate::pipeline) fn set_all(&mut self, way: Option<Way>) {
         self.all = way;
     }
 

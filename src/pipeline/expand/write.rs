@@ -7,7 +7,7 @@ use super::expanded::Expanded;
 use super::in_place::InPlace;
 use super::kept::Notes;
 use super::survey::Survey;
-use super::way::{Asked, Way};
+use super::way::{LineWays, Way};
 use crate::diagnostic::Diagnostic;
 use crate::machine::Machine;
 use crate::pipeline::{Failure, Options};
@@ -21,17 +21,17 @@ pub(super) struct Written {
 }
 
 /// Writes the series of a program that are asked for. The program is the original, or stands
-/// with blocks in place of calls.
+/// with blocks in place of calls. Why others stay is added to `notes`.
 pub(super) fn write(
     survey: Survey,
     machine: &Machine,
     paths: &[Options],
-    asked: &Asked,
+    asked: &LineWays,
     (program, placed): (&[u8], Option<&InPlace>),
+    mut notes: Notes,
 ) -> Result<(Written, Vec<Diagnostic>), Failure> {
     let origin = |line| placed.map_or(line, |placed| placed.origin(line));
     let text = placed.map_or(program, |placed| &placed.text);
-    let mut notes = Notes::default();
     // By their first lines.
     let (mut written, mut levels) = (BTreeMap::new(), BTreeMap::new());
     let (mut kept, mut n_words) = (BTreeMap::new(), BTreeMap::new());

@@ -4,7 +4,7 @@
 use super::discover::Found;
 use super::rounds::Job;
 use super::{SetFailure, SetSummary};
-use crate::pipeline::expand::{Asked, NOT_WRITTEN_OUT, Way, expand, explain, in_fixed_blocks};
+use crate::pipeline::expand::{LineWays, NOT_WRITTEN_OUT, Way, expand, explain, in_fixed_blocks};
 use crate::pipeline::{Options, RestartRows, Summary};
 
 /// Limits a set as it stands, or else with the cycles of its programs written in another way.
@@ -16,7 +16,7 @@ pub(super) fn limit(
 ) -> Result<SetSummary, SetFailure> {
     let mut set = job.limit(rows)?;
     let mut originals: Vec<Summary> = set.programs.iter().map(|it| it.before.clone()).collect();
-    let mut wanted: Vec<Asked> = vec![Asked::default(); originals.len()];
+    let mut wanted: Vec<LineWays> = vec![LineWays::default(); originals.len()];
     for way in [Way::Placed, Way::WrittenOut] {
         if set.certified() || way == Way::WrittenOut && !job.how.allowed.expand {
             break;
@@ -41,7 +41,7 @@ pub(super) fn limit(
             ) else {
                 continue;
             };
-            wanted.all(all.then_some(way));
+            wanted.set_all(all.then_some(way));
             let (expanded, notes) =
                 expand(&program.text, job.machine, ways, wanted).map_err(SetFailure::of(number))?;
             before.notes.retain(|note| note.rule != NOT_WRITTEN_OUT);
