@@ -119,9 +119,42 @@ fn an_arc_without_a_centre_may_be_a_line() {
     3 arc X30.0000 Y0.0000 center 30.0000,5.0000 turns -0.5000 F100.0000
     ");
     let said = "2 arc-center: an arc without a centre (I J) or R\n";
-    assert!(moves("fanuc", program).contains(said));
+    // By default it is one too, as a control that does not do so stops with an alarm.
+    assert_eq!(moves("fanuc", program), found);
+    assert!(notes("fanuc", program).contains(&"arc-as-line"));
+    assert!(moves("haas", program).contains(said));
     let refused = machine("fanuc", "[language]\narc_without_center = \"refused\"\n");
     assert!(moves_on(&refused, program).contains(said));
+}
+
+/// B-64484EN, "Machine coordinate system": G53 moves by rapid traverse, whatever the motion word.
+#[test]
+fn moves_in_machine_coordinates_are_rapids() {
+    let program = "G1 X10. F100.\nG53 Z-10.\nX20.\n";
+    assert_snapshot!(moves("fanuc", program), @r"
+    1 feed X10.0000 F100.0000
+    2 rapid Z-10.0000
+    3 feed X20.0000 F100.0000
+    ");
+    assert!(notes("fanuc", program).contains(&"rapid-in-g53"));
+    // Mitsubishi: "cutting feedrate or rapid traverse following command modal".
+    assert_snapshot!(moves("mitsubishi", program), @r"
+    1 feed X10.0000 F100.0000
+    2 feed Z-10.0000 F100.0000
+    3 feed X20.0000 F100.0000
+    ");
+}
+
+/// The way out of a tap is as fast as the machine file says, and so is the spindle. In pecks it
+/// counts as coming back to R, which takes the longest.
+#[test]
+fn taps_return_faster_and_peck() {
+    let program = "S500 M3\nG0 Z10.\nG99 G84 X5. Z-5. R2. F500.\nX10. Q3.\nG80\n";
+    let faster = machine("fanuc", "[language]\ntap_return_factor = 2\n");
+    assert_snapshot!(moves_on(&faster, program), @r"
+    ");
+    assert!(notes("fanuc", program).contains(&"tap-return"));
+    assert!(notes("fanuc", program).contains(&"tap-pecks"));
 }
 
 /// Lengths without a point are noted wherever they stand; a level of G05.1 is none.

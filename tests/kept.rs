@@ -56,6 +56,13 @@ fn variables_that_outlast_a_program_are_unknown() {
     fits("linuxcnc", "G0 X#<_far>\nM2\n", "--set #<_far>=7");
     refused("siemens", "G0 X=R1\nM30\n", "R1 has no value");
     fits("siemens", "G0 X=R1\nM30\n", "--set R1=3");
+    let global = "G0 X=WIDTH/2\nM30\n";
+    refused(
+        "siemens",
+        global,
+        "give what the control keeps, as in --set WIDTH=1",
+    );
+    fits("siemens", global, "--set width=3");
     refused("okuma", "G0 X=VC1\nM30\n", "VC1 has no value");
     fits("okuma", "G0 X=VC1\nM30\n", "--set VC1=3");
 }

@@ -452,6 +452,11 @@ fn diam90_halves_places_and_no_increments() {
     );
     assert_eq!(ends, [25.0, 35.0, 30.0, 10.0, 20.0, 7.0, 4.0, 9.0]);
     // Actual values are diameters under G91 too.
+    // So is the place of a centre; as an increment it is a radius.
+    let arcs = "G18 G90 DIAM90 F100\nG0 Z36 X13.8441\nG3 Z37.6614 X15.5951 K=AC(36.096) I=AC(17.5082)\n\
+                G3 Z37.6614 X15.5951 K=AC(36.096) I=IC(0.9566)\n";
+    assert_snapshot!(moves(arcs), @r"
+    ");
     let read = values("DIAM90 X50\nR1=$AA_IW[X]\nG91\nR2=$AA_IW[X]\nDIAMOF G90 X=R1+R2\n");
     assert_eq!(read, [25.0, 100.0]);
 }

@@ -225,7 +225,7 @@ const SLICERS: &[&str] = &[
 ];
 
 /// All marks.
-pub(super) const MARKS: [Mark; 66] = [
+pub(super) const MARKS: [Mark; 67] = [
     // TwinCAT NC I
     mark("DynOvr", NCI, 10, |line| line.code().starts_with("DYNOVR")),
     mark("#set param", NCI, 10, |line| {
@@ -406,8 +406,19 @@ pub(super) const MARKS: [Mark; 66] = [
     mark("M98 with a file's name", REPRAP, 8, |line| {
         line.m(&[98]) && line.raw().contains('"')
     }),
-    mark("M566, M572 or M593", REPRAP, 5, |line| {
-        line.m(&[566, 572, 593])
+    // Prusa's firmware has M572 and M593 too, with other arguments.
+    mark(
+        "M566, M572 with D, or M593 with a name",
+        REPRAP,
+        5,
+        |line| {
+            line.m(&[566])
+                || line.m(&[572]) && line.has_letter(b'D')
+                || line.m(&[593]) && line.raw().contains('"')
+        },
+    ),
+    mark("M862 of Prusa", &["marlin"], 6, |line| {
+        line.raw().starts_with("M862.")
     }),
     // Fanuc and relatives
     mark("%", FANUCS_AND_LINUXCNC, 1, |line| line.raw() == "%"),

@@ -70,7 +70,10 @@ pub fn ideal<R: Read + Seek>(
         strategy: Strategy::Split,
         ..asked
     };
-    let in_pieces_s = (before.unfit_count <= IN_PIECES_MAX && impossible(&target).is_none())
+    // In pieces no program is faster than it was.
+    let may_gain = duration_s.is_none_or(|it| is_worth(it - before.duration_s, it));
+    let few = before.unfit_count <= IN_PIECES_MAX;
+    let in_pieces_s = (few && may_gain && impossible(&target).is_none())
         .then(|| trial.soonest_s(options, split))
         .flatten();
     let Some(duration_s) = duration_s.or(in_pieces_s) else {

@@ -298,11 +298,13 @@ fn ideal_text(summary: &LimitSummary) -> String {
         }
     } else {
         let soonest_s = ideal.in_pieces_s.unwrap_or(ideal.duration_s);
-        format!(
-            "with a word for acceleration between moves it would fit, in {} instead of {}",
-            duration(soonest_s),
-            duration(summary.before.duration_s)
-        )
+        let [now, soonest] = [summary.before.duration_s, soonest_s].map(duration);
+        let word = "with a word for acceleration between moves it would fit, ";
+        if soonest == now {
+            format!("{word}as fast as it is now")
+        } else {
+            format!("{word}in {soonest} instead of {now}")
+        }
     };
     if !ideal.settings.is_empty() {
         let _ = write!(text, " ({})", ideal.settings.join("; "));

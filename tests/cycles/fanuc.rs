@@ -81,6 +81,14 @@ fn fanuc_pecks_taps_and_bores() {
     ");
 }
 
+/// R that was never given is an increment of nothing: the hole begins at the initial level.
+#[test]
+fn without_r_a_hole_begins_where_it_is_called() {
+    let program = "G90 G0 Z10\nG99 G81 X1 Z-3 F100\nX2 R2\nG80\nG81 X3 Z-3\n";
+    assert_snapshot!(moves("iso", program), @r"
+    ");
+}
+
 /// Fanuc G88: the operator retracts to somewhere, then a rapid to the level.
 #[test]
 fn fanuc_retracts_from_an_unknown_place() {

@@ -75,6 +75,9 @@ fn short_lines(word: &str) -> String {
 fn unsaid(controller: &str) -> &'static str {
     match controller {
         "linuxcnc" => "M19 R0\n",
+        "marlin" => "M900 K0.05\n",
+        "klipper" => "SET_PRESSURE_ADVANCE ADVANCE=0.05\n",
+        "reprap" => "M572 D0 S0.05\n",
         _ => "G10 L2 P2 X0\n",
     }
 }
@@ -137,6 +140,9 @@ fn words_stop_the_motion_as_the_profile_says() {
         "M67 E0 Q1",
         "(PRINT, a)",
         "(MSG, a) (b)",
+        // Without a comma it is a comment like others.
+        "(MSG)",
+        "(debug x)",
         "M48",
         "G54",
     ] {
@@ -147,6 +153,132 @@ fn words_stop_the_motion_as_the_profile_says() {
     // What is in force already stops nothing.
     same(GRBL, "M9\n", "(c)\n");
     same(GRBL, "M5 S100\n", "(c)\n");
+}
+
+/// Firmwares of printers wait for the moves before they set some things, and go on at others: what
+/// the profile does not name counts as both.
+#[test]
+fn commands_of_printers_stop_the_motion_as_the_profile_says() {
+    let rig = |controller| Rig { controller, ..RIG };
+    let same = |controller, word: &str, like: &str| {
+        let [rows, expected] = [word, like].map(|word| report(rig(controller), &short_lines(word)));
+        assert_eq!(rows, expected, "{controller} {word}");
+    };
+    for controller in ["marlin", "klipper", "reprap"] {
+        for word in ["M400\n", "M84\n"] {
+            same(controller, word, "G4 P0\n");
+        }
+        for word in [
+            "M73 P5\n",
+            "M106 S255\n",
+            "M104 S0\n",
+            "M117 half\n",
+            "M220 S100\n",
+        ] {
+            same(controller, word, "; nothing\n");
+        }
+        let doubtful = [
+            "M7\n",
+            "M569 P0\n",
+            "M913 X50\n",
+            "M190 S60\n",
+            unsaid(controller),
+        ];
+        let known = |word: &&str| controller == "reprap" && word.starts_with("M190");
+        for word in doubtful.into_iter().filter(|word| !known(word)) {
+            let rows = report(rig(controller), &short_lines(word));
+            assert_eq!(
+                rows[99].certificate,
+                Certificate::Robust,
+                "{controller} {word}"
+            );
+        }
+    }
+    same("reprap", "M190 S60\n", "G4 P0\n");
+    same("klipper", "SET_LED LED=a RED=1\n", "; nothing\n");
+    same("klipper", "SAVE_GCODE_STATE\n", "; nothing\n");
+    for word in [
+        "SET_TMC_CURRENT STEPPER=stepper_x CURRENT=1\n",
+        "TEMPERATURE_WAIT SENSOR=a\n",
+    ] {
+        let rows = report(rig("klipper"), &short_lines(word));
+        assert_eq!(rows[99].certificate, Certificate::Robust, "{word}");
+    }
+}
+
+/// What grbl gets after M2 and M30 it executes, under the modes that these leave.
+#[test]
+fn grbl_goes_on_after_the_end() {
+    let program = "%\nG21 G91 G18\nG0 X10\nM30\n%\nY10 F600\nG0 X300\nM2\n";
+    let rows = report(GRBL, program);
+    let found: Vec<_> = rows.iter().map(|row| (row.line, row.kind.name())).collect();
+    assert_eq!(found, [(3, "rapid"), (6, "feed"), (7, "rapid")]);
+    // 10 mm/s, and 0.5 m/s to an absolute place.
+    peak(&rows[1], 0.01);
+    peak(&rows[2], 0.5);
+}
+
+/// `LinuxCNC` runs splines as tangent arcs, between which it does not stop under G61 either.
+#[test]
+fn splines_are_bounded() {
+    let curves = [
+        "G5 X20 Y0 I5 J10 P-5 Q-10",
+        "G5.1 X20 Y0 I10 J15",
+        "G5.2 X5 Y8 P1\nX9 Y9 P1\nX20 Y0 P1\nG5.3",
+    ];
+    for (mode, curve) in ["G61", "G64", "G64 P0.1"]
+        .iter()
+        .flat_map(|mode| curves.map(|it| (mode, it)))
+    {
+        let rows = report(
+            LINUXCNC,
+            &format!("G21 G90 G17 {mode}\nF12000\n{curve}\nM2\n"),
+        );
+        let robust = |row: &Row| row.certificate == Certificate::Robust;
+        assert!(
+            !rows.is_empty() && rows.iter().all(robust),
+            "{mode} {curve}"
+        );
+        // 0.2 m/s, as LinuxCNC reaches about half of it there.
+        assert!(
+            rows.iter().any(|row| row.peak_w > 0.9 * 2500.0 * 0.2),
+            "{mode} {curve} {rows:?}"
+        );
+    }
+}
+
+/// Of an arc that bulges less than the tolerance its chords count, whatever full turns it is
+/// given (`chord_deviation` of `emccanon.cc`).
+#[test]
+fn flat_arcs_lose_their_turns() {
+    let program = "G21 G90 G17 G64 P0.2\nF12000\nG1 X20\nG3 X22 Y0.2 R20\nG1 X40 Y4\nM2\n";
+    let turned = program.replace("R20", "R20 P3");
+    let [once, thrice] = [program, turned.as_str()].map(|program| report(LINUXCNC, program));
+    assert_eq!(once.len(), 3);
+    for (once, thrice) in once.iter().zip(&thrice) {
+        assert!(
+            (once.peak_w - thrice.peak_w).abs() < 1e-9,
+            "{once:?} {thrice:?}"
+        );
+    }
+}
+
+/// A move of some servo cycles may have ended before the next one comes, which then takes no part
+/// in a blend, and keeps all of its acceleration.
+#[test]
+fn after_a_brief_move_the_next_one_keeps_its_acceleration() {
+    let alone = report(LINUXCNC, "G21 G90 G64\nG0 X40\nM2\n");
+    for mode in ["G64", "G61", "G64 P0.01"] {
+        let program = format!("G21 G90 {mode}\nG0 Y0.0004\nG0 X40\nG0 Y40\nM2\n");
+        let rows = report(LINUXCNC, &program);
+        assert!(
+            rows[1].peak_w >= alone[0].peak_w * (1.0 - 1e-9),
+            "{mode} {rows:?}"
+        );
+    }
+    // 1 mm takes 28 ms.
+    let longer = report(LINUXCNC, "G21 G90 G64\nG0 Y1\nG0 X40\nG0 Y40\nM2\n");
+    assert_eq!(longer[1].certificate, Certificate::Planned);
 }
 
 /// Nothing is in doubt between two stops.
@@ -362,12 +494,9 @@ fn text(pieces: &[Piece], controller: &str, doubt: Option<&str>) -> String {
             Piece::Feed(feed) => writeln!(program, "F{feed}"),
             Piece::Word("G64") if controller == "linuxcnc" => writeln!(program, "G64 P0.02 Q0.01"),
             Piece::Word("G61" | "G64") if controller != "linuxcnc" => Ok(()),
-            Piece::Word(word @ ("M8" | "M9")) => match doubt {
+            Piece::Word("M8" | "M9") => match doubt {
                 Some(other) => write!(program, "{other}"),
-                None if matches!(controller, "linuxcnc" | "grbl") => {
-                    write!(program, "{}", unsaid(controller))
-                }
-                None => writeln!(program, "{word}"),
+                None => write!(program, "{}", unsaid(controller)),
             },
             Piece::Word(word) => writeln!(program, "{word}"),
         };
@@ -433,7 +562,7 @@ proptest! {
     #[test]
     fn doubt_covers_both(
         pieces in prop::collection::vec(piece(), 1..25),
-        controller in prop::sample::select(vec!["linuxcnc", "grbl"]),
+        controller in prop::sample::select(vec!["linuxcnc", "grbl", "marlin", "klipper", "reprap"]),
     ) {
         let rig = random_rig(controller, 1.0);
         let machine = rig.machine();

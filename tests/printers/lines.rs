@@ -111,7 +111,7 @@ fn extended_commands() {
     assert_snapshot!(klipper("PARK_BED BED=60 EXTRUDER=200\n"), @"unknown-macro: `PARK_BED` is a macro or a command that this profile does not know");
     assert_snapshot!(marlin("SET_VELOCITY_LIMIT ACCEL=5\n"), @"unknown-macro: `SET_VELOCITY_LIMIT` is a macro or a command that this profile does not know");
     assert_snapshot!(reprap("if x > 1\n"), @"meta-command: `if`: branches, loops and variables are not supported");
-    assert_snapshot!(reprap("M98 P\"a.g\"\n"), @"unsupported-code: M98 runs a macro file");
+    assert_snapshot!(reprap("M98 P\"a.g\"\n"), @"unsupported-code: M98 runs a macro file, which is not read");
     assert_snapshot!(reprap("M99\n"), @"unsupported-code: M99 belongs to a macro file");
     assert_snapshot!(reprap("G1 X{global.x}\n"), @"expression: expressions in `{ }` are not supported");
     assert_snapshot!(marlin("M502\n"), @"unsupported-code: M502 loads settings that the machine file does not describe");

@@ -3,6 +3,13 @@
 use insta::assert_snapshot;
 
 use super::moves;
+/// Both planes may be one where the depth is absolute (alarm 61101 is of a relative one).
+#[test]
+fn a_retraction_plane_may_be_the_reference_plane() {
+    assert_snapshot!(moves("G0 X5 Z5 F200\nCYCLE82(3,3,,-1,,1)\n"), @r"
+    ");
+}
+
 /// "Drilling cycles".
 #[test]
 fn drilling_cycles_as_moves() {

@@ -288,8 +288,8 @@ fn refusals_name_the_construct() {
             "1 cycle: a cycle whose depth lies above its reference plane",
         ),
         (
-            "CYCLE81(10,10,1,5)",
-            "1 cycle: a cycle whose retraction plane is its reference plane",
+            "CYCLE81(10,10,1,,5)",
+            "1 cycle: a cycle whose retraction plane is its reference plane, without a depth DP",
         ),
         (
             "CYCLE81()",

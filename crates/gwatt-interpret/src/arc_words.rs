@@ -7,7 +7,7 @@ use super::letters::bit;
 use super::places::STANDSTILL_MM;
 use super::turned_arc::Tilted;
 use gwatt_machine::units::MM_PER_INCH;
-use gwatt_machine::{ALL_AXES, AxisKind};
+use gwatt_machine::{ALL_AXES, ArcWithoutCenter, AxisKind};
 use gwatt_motion::{Arc, MoveKind};
 use gwatt_syntax::source::Span;
 
@@ -27,9 +27,17 @@ pub(super) fn lone_arc(run: &mut Run<'_, '_>) {
 impl Control<'_> {
     pub(super) fn arc(&mut self, run: &mut Run<'_, '_>) {
         let shape = bit(b'I') | bit(b'J') | bit(b'K') | bit(b'R');
-        if self.machine.controller.language.arc_without_center_is_line
+        let otherwise = self.machine.controller.language.arc_without_center;
+        if otherwise != ArcWithoutCenter::Refused
             && run.words.unused & shape == 0
+            && run.words.has_axes()
         {
+            if otherwise == ArcWithoutCenter::LineOrAlarm {
+                let message = "an arc without a centre and a radius: a line to its end, if no alarm \
+                               (Fanuc: parameter 3403 bit CIR)";
+                let span = run.whole();
+                run.report.note_once("arc-as-line", message, span);
+            }
             run.facts.fixed = Some("it is a line under G2 or G3, without a centre");
             return self.straight(run);
         }

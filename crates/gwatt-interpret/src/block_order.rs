@@ -48,6 +48,11 @@ impl Control<'_> {
             let Some(kind @ (ActionKind::Stop | ActionKind::End)) = self.m_kind(number) else {
                 continue;
             };
+            if kind == ActionKind::End && self.is_grbl() {
+                run.act(ActionKind::Stop, f64::from(number) / 10.0);
+                self.begin_again(run);
+                continue;
+            }
             self.ended |= kind == ActionKind::End;
             run.act(kind, f64::from(number) / 10.0);
         }

@@ -1,5 +1,5 @@
 //! Variables that the control keeps, with the values that the one who runs the program
-//! gives them: `#500=1.5`, `#<_depth>=2`, `R1=3`, `VC1=4`.
+//! gives them: `#500=1.5`, `#<_depth>=2`, `R1=3`, `VC1=4`, `GRIND_FEED=5`.
 
 mod control;
 
@@ -33,6 +33,8 @@ enum Given {
     R(u32),
     /// `V1`, `VC1`, `VS1`.
     Common(String),
+    /// A global name of SINUMERIK, in upper case.
+    Global(String),
 }
 
 impl fmt::Display for Given {
@@ -41,7 +43,7 @@ impl fmt::Display for Given {
             Self::Number(number) => write!(f, "#{number}"),
             Self::Named(name) => write!(f, "#<{name}>"),
             Self::R(number) => write!(f, "R{number}"),
-            Self::Common(name) => f.write_str(name),
+            Self::Common(name) | Self::Global(name) => f.write_str(name),
         }
     }
 }
@@ -80,18 +82,33 @@ impl FromStr for GivenVariable {
         } else if let Some(digits) = name.strip_prefix('#') {
             Given::Number(number(digits).filter(|own| *own > 0).ok_or_else(form)?)
         } else if let Some(digits) = upper.strip_prefix('R') {
-            Given::R(number(digits).ok_or_else(form)?)
+            match number(digits) {
+                Some(number) => Given::R(number),
+                None if is_name(&upper) => Given::Global(upper),
+                None => return Err(form()),
+            }
         } else {
             let digits = upper.trim_start_matches(|it: char| it.is_ascii_uppercase());
             let front = &upper[..upper.len() - digits.len()];
-            if !matches!(front, "V" | "VC" | "VS") {
+            if matches!(front, "V" | "VC" | "VS") && number(digits).is_some() {
+                Given::Common(upper)
+            } else if is_name(&upper) {
+                Given::Global(upper)
+            } else {
                 return Err(form());
             }
-            number(digits).ok_or_else(form)?;
-            Given::Common(upper)
         };
         Ok(Self { name: given, value })
     }
+}
+
+/// Whether a text is a name as SINUMERIK has them: two letters or underscores first, then digits
+/// too ("Rules for names").
+fn is_name(upper: &str) -> bool {
+    let letter = |byte: &u8| byte.is_ascii_uppercase() || *byte == b'_';
+    let (first, rest) = upper.as_bytes().split_at(upper.len().min(2));
+    let part = |byte: &u8| letter(byte) || byte.is_ascii_digit();
+    first.len() == 2 && first.iter().all(letter) && rest.iter().all(part)
 }
 
 impl GivenVariable {
@@ -111,7 +128,7 @@ impl GivenVariable {
             (Given::Number(5401..=5413 | 5420..=5428), KeptVariables::NumbersAndNames) => false,
             (Given::Number(_), KeptVariables::Numbers | KeptVariables::NumbersAndNames)
             | (Given::Named(_), KeptVariables::NumbersAndNames)
-            | (Given::R(_), KeptVariables::R)
+            | (Given::R(_) | Given::Common(_) | Given::Global(_), KeptVariables::R)
             | (Given::Common(_), KeptVariables::Common) => true,
             _ => false,
         }

@@ -1,12 +1,13 @@
 //! grbl's lines that begin with `$` ("Commands", "Configuration v1.1"), and what it takes out
 //! of others before it reads them.
 
+use super::code::Motion;
 use super::control::{Control, Run};
 use super::report::Report;
 use crate::rules::Macros;
 use gwatt_machine::CornerRule;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
-use gwatt_motion::ActionKind;
+use gwatt_motion::{ActionKind, FeedMode};
 use gwatt_syntax::{Block, Issue, IssueKind, MAX_ISSUES};
 
 /// Commands that show something or unlock, and move nothing.
@@ -31,8 +32,33 @@ fn realtime(byte: u8) -> Option<&'static str> {
 }
 
 impl Control<'_> {
-    fn is_grbl(&self) -> bool {
+    pub(super) fn is_grbl(&self) -> bool {
         self.rules.macros == Macros::OWords && self.machine.controller.language.loose_o_words
+    }
+
+    /// After M2 and M30 it executes what comes: under the modes that these leave (`gcode.c`,
+    /// "Program flow").
+    pub(super) fn begin_again(&mut self, run: &mut Run<'_, '_>) {
+        let modal = &mut self.modal;
+        (modal.motion, modal.plane, modal.absolute) = (Motion::Linear, [0, 1, 2], true);
+        (modal.feed_mode, modal.feed_mode_word) = (FeedMode::PerMinute, 940);
+        let whole = run.whole();
+        self.select_system(1, whole, run);
+        self.special.turn_spindle(50);
+        for (kind, number) in [(ActionKind::Spindle, 50), (ActionKind::Coolant, 90)] {
+            let value = f64::from(number) / 10.0;
+            self.switch_loads(value);
+            self.switches.switch(number);
+            run.act(kind, value);
+        }
+        // grblHAL: "the end of a program restores" its profile of accelerations.
+        for knob in &self.machine.controller.knobs {
+            if let Some(levels) = &knob.levels {
+                self.knobs.select(self.machine, knob, Some(levels.power_on));
+                run.facts.turns_knob = true;
+            }
+        }
+        run.facts.boundary = true;
     }
 
     /// Whether a line is a command of grbl.

@@ -202,8 +202,15 @@ impl Control<'_> {
     }
 
     pub(super) fn straight(&mut self, run: &mut Run<'_, '_>) {
-        let rapid = matches!(self.modal.motion, Motion::Rapid | Motion::None)
-            && !self.machine.controller.language.rapid_uses_feed;
+        let language = &self.machine.controller.language;
+        let always = run.facts.machine_coordinates && language.moves_in_machine_at_rapid;
+        let rapid = (always || matches!(self.modal.motion, Motion::Rapid | Motion::None))
+            && !language.rapid_uses_feed;
+        if always && self.modal.motion == Motion::Linear {
+            let message = "G53 under G1 counts as a rapid";
+            let span = run.whole();
+            run.report.note_once("rapid-in-g53", message, span);
+        }
         let kind = if rapid {
             MoveKind::Rapid
         } else {

@@ -26,7 +26,7 @@ impl Control<'_> {
         }
         if block.tape && !self.rules.percent_names_programs {
             // The first `%` opens the tape; one after any block ends it.
-            self.ended = self.begun;
+            self.ended = self.begun && !self.is_grbl();
             return true;
         }
         if block.delete_level == 0 {

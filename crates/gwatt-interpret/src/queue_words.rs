@@ -129,14 +129,10 @@ pub(super) fn message(text: &[u8]) -> Option<usize> {
         .iter()
         .filter(|byte| !matches!(byte, b' ' | b'\t'))
         .map(u8::to_ascii_uppercase);
-    let word: arrayvec::ArrayVec<u8, 8> = letters
-        .by_ref()
-        .take_while(u8::is_ascii_alphabetic)
-        .take(8)
-        .collect();
-    MESSAGES
-        .iter()
-        .position(|name| name.as_bytes() == word.as_slice())
+    // The name and its comma; without one it is a comment like others.
+    let word: arrayvec::ArrayVec<u8, 8> = letters.by_ref().take(8).collect();
+    let named = |name: &&str| word.strip_prefix(name.as_bytes())?.first().copied();
+    MESSAGES.iter().position(|name| named(name) == Some(b','))
 }
 
 #[cfg(test)]
@@ -150,6 +146,9 @@ mod tests {
         assert_eq!(message(b"(print,1)"), Some(2));
         assert_eq!(message(b"(MSG, a) (then)"), None);
         assert_eq!(message(b"(MSGS, a)"), None);
+        assert_eq!(message(b"(msg)"), None);
+        assert_eq!(message(b"(msg\t,x)"), Some(0));
+        assert_eq!(message(b"(DEBUG x)"), None);
         assert_eq!(message(b"G1 X1"), None);
     }
 }

@@ -2,14 +2,22 @@
 //! "G5 Cubic Spline", "G5.1 Quadratic Spline", "G5.2 G5.3 NURBS Block").
 //!
 //! A curve becomes short lines, 15 for each control point, as `LinuxCNC`'s own
-//! module for previews has them; its motion takes arcs, fewer and longer. So
-//! the lines count as blended whatever the path mode: the bound for blended
-//! moves holds for both.
+//! module for previews has them; its motion takes tangent arcs (`biarc` of `emccanon.cc`),
+//! fewer and longer, between which it does not stop under G61 either. So the lines count
+//! as chords of another path, which is bounded and not planned.
 
 mod words;
 
+use gwatt_motion::{Step, Stray};
+use std::f64::consts::SQRT_2;
+
 /// Lines for each control point.
 const LINES_FOR_A_POINT: usize = 15;
+/// How much further than from chord to chord the arcs may turn.
+const ARCS_TURN: f64 = 1.5;
+/// By how much the planner may exceed the limits of axes on arcs: what speeds up and what turns
+/// keep to them one by one.
+const ARCS_EXCEED: f64 = SQRT_2 - 1.0;
 /// Control points and order of a NURBS that are followed.
 const POINTS_MAX: usize = 5000;
 const ORDER_MAX: usize = 16;
@@ -39,6 +47,32 @@ impl Spline {
     pub(super) fn end(&mut self) {
         self.first = None;
         self.points.clear();
+    }
+}
+
+/// Marks lines as the chords of a curve, each with how far it turns to the ones next to it.
+fn as_chords(steps: &mut [Step]) {
+    let along = |step: &Step| match step {
+        Step::Move(mv) if mv.length_mm > 0.0 => {
+            let axis = |i: usize| (mv.end[i] - mv.start[i]) / mv.length_mm;
+            Some([axis(0), axis(1)])
+        }
+        _ => None,
+    };
+    let directions: Vec<_> = steps.iter().map(along).collect();
+    for (index, step) in steps.iter_mut().enumerate() {
+        let Step::Move(mv) = step else { continue };
+        let own = directions.get(index).copied().flatten();
+        let neighbours = [index.checked_sub(1), index.checked_add(1)];
+        let turns = neighbours.into_iter().flatten().filter_map(|other| {
+            let [[x, y], [u, v]] = [own?, directions.get(other).copied().flatten()?];
+            Some(libm::hypot(x - u, y - v))
+        });
+        mv.stray = Stray {
+            direction: ARCS_TURN * turns.fold(0.0, f64::max),
+            accel: ARCS_EXCEED,
+            in_chords: true,
+        };
     }
 }
 

@@ -109,8 +109,12 @@ pub struct Language {
     pub groove_return_mm: Option<f64>,
     /// G71 and G72 go from pass to pass as in type I where the contour of type II has no pocket.
     pub type_2_as_type_1: bool,
-    /// G2 and G3 without a centre and a radius are straight lines; else they are refused.
-    pub arc_without_center_is_line: bool,
+    /// What G2 and G3 without a centre and a radius are.
+    pub arc_without_center: ArcWithoutCenter,
+    /// How many times as fast as the way in the return of a tap is; `None`: not known, once.
+    pub tap_return_factor: Option<f64>,
+    /// G53 moves at rapid speed whatever the motion word.
+    pub moves_in_machine_at_rapid: bool,
     /// How far the radii of an arc at its start and end may always differ, mm: in a
     /// program in mm, and in one in inches; `None`: not known, the least of all.
     pub arc_tolerance_mm: Option<[f64; 2]>,
@@ -235,6 +239,17 @@ impl Dialect {
     pub fn adapts(&self) -> bool {
         self.point.is_some() || self.lathe.is_some()
     }
+}
+
+/// What an arc without a centre and a radius is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ArcWithoutCenter {
+    /// An error.
+    Refused,
+    /// A straight line to its end, at F.
+    Line,
+    /// A parameter of the control says which of both: it counts as a line.
+    LineOrAlarm,
 }
 
 /// What a number without a decimal point means.

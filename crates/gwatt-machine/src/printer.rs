@@ -17,6 +17,8 @@ pub struct Printer {
     /// Limits that the program sets may act on the move before them already, unless a line
     /// with a motion word stands in between.
     pub early_limits: bool,
+    /// G29 with S1 to S3 loads, drops or saves the map of heights, and moves nothing.
+    pub height_map: bool,
     /// mm/s in one unit of M203; `None` where M203 is not known and does
     /// nothing.
     pub speed_cap_mm_s: Option<f64>,
@@ -136,6 +138,7 @@ impl Default for Printer {
             extruder_mode: ExtruderMode::Follows,
             several_commands: false,
             early_limits: false,
+            height_map: false,
             speed_cap_mm_s: Some(1.0),
             limits_in_mm: false,
             velocity_limit: false,

@@ -1,6 +1,8 @@
 //! What words that move no axis do to moves that are planned ahead: whether the
 //! motion stops before them.
 
+use crate::printer::Command;
+
 /// Comments that act (`LinuxCNC`, "Messages"), in the order of their numbers.
 pub const MESSAGES: [&str; 4] = ["MSG", "DEBUG", "PRINT", "LOG"];
 
@@ -35,6 +37,8 @@ pub struct Queue {
     pub passes: Vec<QueueWord>,
     /// The same, but such lines may be.
     pub joins: Vec<QueueWord>,
+    /// Extended commands of printers that the lists name.
+    pub names: Vec<(Command, QueueEffect)>,
 }
 
 /// What a word does to the motion before it.
@@ -65,11 +69,18 @@ impl Queue {
         let found = lists.into_iter().find(|(list, _)| named(list));
         found.map(|(_, effect)| effect)
     }
+
+    /// The same of an extended command, by its name in any case.
+    #[must_use]
+    pub fn effect_of_name(&self, name: &[u8]) -> Option<QueueEffect> {
+        let found = self.names.iter().find(|(own, _)| own.is_macro(name));
+        found.map(|(_, effect)| *effect)
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Queue, QueueEffect, QueueWord};
+    use super::{Command, Queue, QueueEffect, QueueWord};
 
     #[test]
     fn a_letter_alone_stands_for_all_its_words() {
@@ -79,6 +90,7 @@ mod tests {
             stops_on_change: vec![word(b'M', Some(90))],
             passes: vec![word(b'M', Some(620))],
             joins: vec![word(b'T', None)],
+            names: vec![(Command::Macros("SET_LED".to_owned()), QueueEffect::Join)],
         };
         assert_eq!(queue.effect(b'S', 15), Some(QueueEffect::Stop));
         assert_eq!(queue.effect(b'M', 80), Some(QueueEffect::Stop));
@@ -86,5 +98,10 @@ mod tests {
         assert_eq!(queue.effect(b'M', 620), Some(QueueEffect::Pass));
         assert_eq!(queue.effect(b'T', 30), Some(QueueEffect::Join));
         assert_eq!(queue.effect(b'M', 70), None);
+        assert_eq!(
+            queue.effect_of_name(b"set_led_template"),
+            Some(QueueEffect::Join)
+        );
+        assert_eq!(queue.effect_of_name(b"SET_PIN"), None);
     }
 }

@@ -298,8 +298,11 @@ pub enum ActionKind {
     End,
     /// The firmware waits until the axes stand, as it does between the moves of homing.
     Rest,
-    /// Another M word.
+    /// Another M word (its number), or a command of a printer with a name (0), with which the
+    /// axes move on.
     Other,
+    /// A command of a printer with a name of which it is not known whether the axes stop for it.
+    MayStop,
     /// Limits change, perhaps for the last move before already: the factor by which they rise at
     /// most for its axes.
     EarlyLimits(EarlyLimits),

@@ -47,8 +47,8 @@ impl Default for Switched {
 
 impl Switched {
     /// What an action does to the motion before it. Where the profile says
-    /// nothing: spindle, tool change, stop and end wait for the axes; words of
-    /// printers go with the moves. What others do is not known.
+    /// nothing: spindle, tool change, stop and end wait for the axes. What others do is not
+    /// known: a firmware may wait for the axes before it sets something.
     pub fn effect(&mut self, controller: &Controller, action: &Action) -> Effect {
         let number = (action.value * 10.0).round().clamp(0.0, 65_535.0) as u16;
         let letter = match action.kind {
@@ -63,7 +63,10 @@ impl Switched {
             | ActionKind::SpindleCenter
             | ActionKind::ToolLoaded => return Effect::None,
             ActionKind::Stop | ActionKind::End | ActionKind::Rest => return Effect::Stop,
-            ActionKind::ToolChangeInMotion | ActionKind::EarlyLimits(_) => return Effect::Unknown,
+            ActionKind::ToolChangeInMotion | ActionKind::EarlyLimits(_) | ActionKind::MayStop => {
+                return Effect::Unknown;
+            }
+            ActionKind::Other if number == 0 => return Effect::None,
             ActionKind::Spindle
             | ActionKind::ToolChange
             | ActionKind::Coolant
@@ -85,7 +88,7 @@ impl Switched {
                 // A printer's T changes the tool.
                 ActionKind::ToolSelect if printer && changes => Effect::Unknown,
                 ActionKind::ToolSelect => Effect::None,
-                _ if printer => Effect::None,
+                ActionKind::SpindleSpeed if printer => Effect::None,
                 _ => Effect::Unknown,
             },
         }

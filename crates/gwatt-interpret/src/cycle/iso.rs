@@ -14,13 +14,14 @@ use gwatt_motion::CYCLE as FIXED;
 use gwatt_motion::{ActionKind, FeedMode, MoveKind};
 
 /// One hole, in machine coordinates.
-struct Hole {
-    number: u16,
-    r_mm: f64,
-    bottom_mm: f64,
+pub(super) struct Hole {
+    pub(super) number: u16,
+    pub(super) r_mm: f64,
+    pub(super) bottom_mm: f64,
     clear_mm: f64,
     dwell_s: Option<f64>,
-    peck_mm: f64,
+    /// Depth of a peck, not of all cycles.
+    pub(super) peck_mm: f64,
     shift_mm: [f64; 2],
 }
 
@@ -144,6 +145,14 @@ impl Control<'_> {
             let base_mm = if absolute { 0.0 } else { from_initial };
             self.special.held.r = Some(base_mm + value * unit);
         }
+        if self.special.held.r.is_none() && !self.rules.cycle_levels_by_m {
+            // An R that was never given is an increment of nothing.
+            self.special.held.r = Some(from_initial);
+            let message =
+                "a canned cycle without R: the hole begins at the level where it is called";
+            let whole = run.whole();
+            run.report.note_once("cycle-without-r", message, whole);
+        }
         let Some(r) = self.special.held.r else {
             run.cycle_needs("R", number);
             return None;
@@ -185,6 +194,9 @@ impl Control<'_> {
             );
             let whole = run.whole();
             run.report.note_once("peck-clearance", &message, whole);
+        }
+        if matches!(number, 740 | 840) {
+            hole.peck_mm = self.tap_peck(run).unwrap_or(0.0).abs() * unit;
         }
         if matches!(number, 760 | 870) {
             for (slot, letter) in [(0, b'I'), (1, b'J'), (2, b'K')] {
@@ -260,7 +272,7 @@ impl Control<'_> {
 
     /// The moves at one place but those of G87; false when they are too many.
     fn iso_hole(&mut self, hole: &Hole, place: &mut AxisValues, run: &mut Run<'_, '_>) -> bool {
-        use MoveKind::{Feed, Rapid, Tap};
+        use MoveKind::{Feed, Rapid};
         let normal = self.modal.plane[2];
         let mut to = |control: &mut Self, run: &mut Run<'_, '_>, kind, level_mm| {
             place[normal] = level_mm;
@@ -277,19 +289,12 @@ impl Control<'_> {
                 }
             }
             740 | 840 => {
-                to(self, run, Tap, hole.bottom_mm);
-                run.spin(Turning::Stopped);
-                self.iso_wait(hole, run);
-                let into = if hole.number == 840 {
-                    Turning::Clockwise
-                } else {
-                    Turning::CounterClockwise
-                };
-                run.spin(into.reversed());
-                to(self, run, Tap, hole.r_mm);
-                run.spin(into);
+                if !self.iso_tap(hole, place, run) {
+                    return false;
+                }
                 if self.retracts(hole) {
-                    to(self, run, Rapid, hole.clear_mm);
+                    place[normal] = hole.clear_mm;
+                    self.part(run, Rapid, place);
                 }
             }
             850 | 890 => {
@@ -408,7 +413,7 @@ impl Control<'_> {
         run.spin(turning);
     }
 
-    fn iso_wait(&self, hole: &Hole, run: &mut Run<'_, '_>) {
+    pub(super) fn iso_wait(&self, hole: &Hole, run: &mut Run<'_, '_>) {
         if let Some(dwell_s) = hole.dwell_s {
             self.dwell(run, dwell_s);
         }

@@ -2,6 +2,7 @@
 
 mod iso;
 mod rs274;
+mod tap;
 mod words;
 
 /// The values of a cycle that hold until it is ended.

@@ -31,11 +31,11 @@ impl Control<'_> {
                     siemens.keep(*number, value);
                 }
             }
-            Given::Common(name) => {
-                if let OwnState::Osp(osp) = &mut self.own {
-                    osp.keep(name, value);
-                }
-            }
+            Given::Common(name) | Given::Global(name) => match &mut self.own {
+                OwnState::Osp(osp) => osp.keep(name, value),
+                OwnState::Siemens(siemens) => siemens.keep_global(name, value),
+                _ => {}
+            },
         }
     }
 }

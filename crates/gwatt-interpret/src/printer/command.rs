@@ -22,6 +22,10 @@ impl Control<'_> {
         let before = run.steps.len();
         let errors = run.report.diagnostics.errors;
         run.facts.executed = true;
+        // Klipper: a name that it does not know, as macros copied from its configuration have.
+        if self.names_parameters() && run.report.text.trim_ascii_start().starts_with(b"#") {
+            return;
+        }
         let mut text = Text::new(run.report.text, run.block.text_end as usize);
         if let Some(star) = text.checksum {
             run.facts.checksum = true;
@@ -95,7 +99,10 @@ impl Control<'_> {
         let (parameters, next) = match text.parameters(at) {
             Ok(found) => found,
             // Whatever its arguments, the profile says what it does.
-            Err(_) if self.is_listed(letter, number) && self.one_a_line() => {
+            Err(_)
+                if self.is_listed(letter, number)
+                    && (self.one_a_line() || ends_with_quote(text.rest(at))) =>
+            {
                 (Parameters::new(), None)
             }
             Err(odd) => {
@@ -212,7 +219,12 @@ impl Control<'_> {
             // The next T changes the tool, whichever it names.
             self.printer.tool = u32::MAX;
         }
-        if !unknown && (self.passes(letter, number) || listed(&printer.ignored_macros)) {
+        let map = (letter, number) == (b'G', 290) && printer.height_map;
+        if map && value(parameters, b'S').is_some_and(|s| matches!(s, 1.0..=3.0)) {
+            note_levelling(run, span);
+            self.shift_axes(&Parameters::new());
+            run.act(ActionKind::MayStop, 0.0);
+        } else if !unknown && (self.passes(letter, number) || listed(&printer.ignored_macros)) {
             note_uncounted(run, letter, number, span);
             run.act(ActionKind::Other, action);
         } else if shifts {
@@ -316,7 +328,13 @@ impl Control<'_> {
             (b'M', 2200) => self.feed_percent(run, parameters, span),
             (b'M', 2210) => self.flow_percent(run, parameters, span),
             (b'M', 5010) => self.restore_settings(run, span),
-            (b'M', 980) => refuse(run, span, "M98 runs a macro file"),
+            (b'M', 980) => {
+                let message = "M98 runs a macro file, which is not read";
+                run.report.error("unsupported-code", message, span).help(
+                    "write its blocks in place of it; or, if nothing is known of such files, list M98 under \
+                     `unknown_macros` in [language] of the machine file",
+                );
+            }
             (b'M', 990) => refuse(run, span, "M99 belongs to a macro file"),
             (b'G', 650..=670) => refuse(run, span, "a macro call is nothing that printers know"),
             (b'M', 5020) => refuse(
@@ -451,7 +469,12 @@ fn flags_of_a_move(run: &mut Run<'_, '_>, parameters: &Parameters) {
 /// What is known to be left out of the estimate.
 fn note_uncounted(run: &mut Run<'_, '_>, letter: u8, number: u16, span: Span) {
     match (letter, number) {
-        (b'M', 9000 | 5720) => note_advance(run, span),
+        (b'M', 9000 | 5720 | 4930) => note_advance(run, span),
+        (b'M', 4250) => {
+            let message =
+                "what compensation of backlash adds to moves after a reversal is not counted";
+            run.report.note_once("backlash", message, span);
+        }
         (b'M', 4200 | 3750) => note_levelling(run, span),
         (b'M', 5660) => note_corners(run, span),
         _ => {}
@@ -479,6 +502,11 @@ pub(super) fn refuse(run: &mut Run<'_, '_>, span: Span, message: &str) {
     run.report
         .error("unsupported-code", message, span)
         .help("nothing is estimated for a program with motion that is not understood");
+}
+
+/// Whether nothing comes after a text in quotes.
+fn ends_with_quote(rest: &[u8]) -> bool {
+    rest.trim_ascii_end().ends_with(b"\"")
 }
 
 /// What stands where a parameter should: an expression, or text.

@@ -40,7 +40,7 @@ impl Control<'_> {
             return Self::bad_value(run, span, "a program may keep 64 positions");
         }
         positions.push((slot, saved));
-        run.act(ActionKind::Other, 60.0);
+        run.act(ActionKind::Other, 0.0);
     }
 
     fn saved_position(&self) -> SavedPosition {
@@ -131,7 +131,7 @@ impl Control<'_> {
         };
         self.printer.states.insert(name, state);
         run.facts.boundary = true;
-        run.act(ActionKind::Other, 60.0);
+        run.act(ActionKind::Other, 0.0);
     }
 
     /// `RESTORE_GCODE_STATE`; with `back` at this speed to its position, if
@@ -197,7 +197,7 @@ impl Control<'_> {
         self.extruder_mode(None);
         self.modal.feed = saved.feed;
         self.settle();
-        run.act(ActionKind::Other, 121.0);
+        run.act(ActionKind::Other, 0.0);
     }
 
     fn stacked(&self) -> usize {

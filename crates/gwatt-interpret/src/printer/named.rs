@@ -11,7 +11,7 @@ use crate::control::{Control, Run};
 use crate::flow::library;
 use crate::jump::Transfer;
 use crate::places::EXTRUDER;
-use gwatt_machine::Command;
+use gwatt_machine::{Command, QueueEffect};
 use gwatt_motion::ActionKind;
 use gwatt_syntax::source::Span;
 
@@ -52,7 +52,7 @@ impl Control<'_> {
                 }
                 _ => {}
             }
-            run.act(ActionKind::Other, 0.0);
+            self.act_by_name(run, name);
         } else if moves || listed(&printer.unknown_moves) {
             if listed(&printer.may_heat) {
                 self.may_heat(run, span);
@@ -60,12 +60,22 @@ impl Control<'_> {
             self.unknown_moves(run, span);
         } else if shifts {
             self.shift_axes(&Parameters::new());
-            run.act(ActionKind::Other, 0.0);
+            self.act_by_name(run, name);
         } else if listed(&printer.unknown_macros) && !self.has_file(name) {
             self.unknown_macro(run, span);
         } else if !(printer.velocity_limit && self.klipper(run, text, upper, span, at)) {
             self.macro_file(run, name, span);
         }
+    }
+
+    /// Tells apart whether the axes move on at a command.
+    fn act_by_name(&self, run: &mut Run<'_, '_>, name: &[u8]) {
+        let kind = match self.machine.controller.queue.effect_of_name(name) {
+            Some(QueueEffect::Stop) => ActionKind::Rest,
+            Some(QueueEffect::Pass | QueueEffect::Join) => ActionKind::Other,
+            Some(QueueEffect::StopOnChange) | None => ActionKind::MayStop,
+        };
+        run.act(kind, 0.0);
     }
 
     /// Whether the profile or the machine file says what a command of this name does.
@@ -175,7 +185,7 @@ impl Control<'_> {
             }
             _ => return false,
         }
-        run.act(ActionKind::Other, 0.0);
+        self.act_by_name(run, name);
         true
     }
 

@@ -28,7 +28,7 @@ impl Control<'_> {
         let before = Before::new(&self.printer, &self.modal, &self.knobs, self.loads);
         self.printer.optional.push(before);
         self.at_full_speed(run, self.machine.axis_set);
-        run.act(ActionKind::Other, 0.0);
+        run.act(ActionKind::MayStop, 0.0);
     }
 
     /// The part ends: which of its words have acted is not known.
@@ -77,6 +77,6 @@ impl Control<'_> {
         }
         self.limits_at_least(&before.knobs);
         self.at_full_speed(run, self.machine.axis_set);
-        run.act(ActionKind::Other, 0.0);
+        run.act(ActionKind::MayStop, 0.0);
     }
 }

@@ -20,7 +20,7 @@ impl Control<'_> {
         run.report.note_once("unknown-moves", &message, span);
         note_levelling_if(run, &name, span);
         self.at_full_speed(run, self.machine.axis_set);
-        run.act(ActionKind::Other, 0.0);
+        run.act(ActionKind::MayStop, 0.0);
     }
 
     /// G28: each group of axes from an unknown place to its endstops.

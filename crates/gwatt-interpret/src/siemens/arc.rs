@@ -178,6 +178,10 @@ impl Control<'_> {
         for (index, offset) in offsets.into_iter().enumerate() {
             let axis = ends.plane[index];
             match (offset, state.extra.center_absolute[axis]) {
+                // A place like others: of X a diameter where these are; increments are radii.
+                (Some(value), Some(true)) if axis == 0 && state.in_diameters() => {
+                    center[index] = value * unit / 2.0;
+                }
                 (Some(value), Some(true)) => center[index] = value * unit,
                 (Some(value), _) => center[index] += value * unit,
                 (None, _) => {}

@@ -112,15 +112,21 @@ impl Control<'_> {
         let axis = self.modal.plane[2];
         let unit = self.unit_of(axis);
         let value = |place| call.value(place).map(|value| value * unit);
+        // DPR counts where both are given; it has no sign.
+        let below = value(5).filter(|below| *below != 0.0);
         let wrong = match (value(1), value(2)) {
-            (Some(retract), Some(reference)) if retract != reference => {
-                let sign = if retract > reference { -1.0 } else { 1.0 };
-                let safe = reference - sign * value(3).unwrap_or(0.0).abs();
-                // DPR counts where both are given; it has no sign.
-                let below = value(5).filter(|below| *below != 0.0);
-                let depth = below.map(|below| reference + sign * below.abs());
-                match depth.or(value(4)) {
-                    Some(depth) if (depth - safe) * sign >= 0.0 => {
+            (Some(retract), Some(reference)) => {
+                // Where both planes are one, an absolute depth says which way it goes.
+                let end = Some(retract).filter(|retract| *retract != reference);
+                let end = end.map(|retract| reference - retract);
+                let end = end.or(value(4)
+                    .filter(|_| below.is_none())
+                    .map(|it| it - reference));
+                let sign = end.filter(|way| *way != 0.0).map(f64::signum);
+                let safe = |sign: f64| reference - sign * value(3).unwrap_or(0.0).abs();
+                let depth = |sign| below.map(|below| reference + sign * below.abs());
+                match sign.map(|sign| (sign, safe(sign), depth(sign).or(value(4)))) {
+                    Some((sign, safe, Some(depth))) if (depth - safe) * sign >= 0.0 => {
                         return Some(Levels {
                             axis,
                             retract,
@@ -130,11 +136,13 @@ impl Control<'_> {
                             sign,
                         });
                     }
-                    Some(_) => "a cycle whose depth lies above its reference plane",
-                    None => "a cycle without a depth (DP or DPR)",
+                    Some((_, _, Some(_))) => "a cycle whose depth lies above its reference plane",
+                    Some(_) => "a cycle without a depth (DP or DPR)",
+                    None => {
+                        "a cycle whose retraction plane is its reference plane, without a depth DP"
+                    }
                 }
             }
-            (Some(_), Some(_)) => "a cycle whose retraction plane is its reference plane",
             _ => "a cycle without a retraction plane (RTP) and a reference plane (RFP)",
         };
         run.report

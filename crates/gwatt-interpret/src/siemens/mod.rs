@@ -183,6 +183,11 @@ impl Siemens {
         self.r.insert(number, value);
     }
 
+    /// The same of a global variable.
+    pub(super) fn keep_global(&mut self, name: &str, value: f64) {
+        self.globals.insert(name.to_owned(), Val::Number(value));
+    }
+
     pub(super) fn new() -> Self {
         Self {
             r: HashMap::new(),

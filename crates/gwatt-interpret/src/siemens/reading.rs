@@ -68,7 +68,7 @@ impl Reading<'_, '_, '_> {
             return Ok(value.clone());
         }
         let message = format!("{name} is not defined in this program");
-        let help = "define it by DEF, or assign it before; what a global variable holds only the control knows";
+        let help = "define it by DEF, assign it before, or give what the control keeps, as in --set WIDTH=1";
         Err(self.cursor.fault("unknown-value", message, help, start))
     }
 

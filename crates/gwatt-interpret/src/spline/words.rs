@@ -1,6 +1,8 @@
 //! The words of splines.
 
-use super::{ControlPoint, FIXED, LINES_FOR_A_POINT, ORDER_MAX, POINTS_MAX, point_at, unweighted};
+use super::{
+    ControlPoint, FIXED, LINES_FOR_A_POINT, ORDER_MAX, POINTS_MAX, as_chords, point_at, unweighted,
+};
 use crate::control::{Control, Run};
 use gwatt_machine::{AxisValues, PathMode};
 use gwatt_motion::{FeedMode, MoveKind};
@@ -190,6 +192,7 @@ impl Control<'_> {
             return;
         };
         let mut end: AxisValues = self.believed();
+        let before = run.steps.len();
         let path_mode = self.modal.path_mode;
         self.modal.path_mode = PathMode::LookAhead;
         let spans = (points.len() + 1 - order) as f64;
@@ -206,6 +209,7 @@ impl Control<'_> {
         end[0] = last.place[0];
         end[1] = last.place[1];
         self.part(run, MoveKind::Feed, &end);
+        as_chords(run.steps.get_mut(before..).unwrap_or_default());
         self.modal.path_mode = path_mode;
     }
 }

@@ -91,6 +91,11 @@ pub(crate) struct LanguageTable {
     /// Whether G83 and G87 of a lathe come out to R after each peck; default: a parameter
     /// of the control says so.
     pub(crate) pecks_return_to_r: Option<bool>,
+    /// What a block with axes under G2 or G3 is that has neither a centre nor a radius;
+    /// default: it is refused.
+    pub(crate) arc_without_center: Option<ArcWithoutCenterName>,
+    /// Whether G53 moves at rapid speed whatever the motion word; default false.
+    pub(crate) moves_in_machine_at_rapid: Option<bool>,
     /// How far an arc's end may always be off its circle, in mm: in a program in mm, and
     /// in one in inches; where it is at most 0.1 % of the radius, a hundred times as far.
     /// Default 0.005 and 0.0127, and 0.5 at most.
@@ -290,8 +295,8 @@ pub(crate) struct PlannerTable {
     /// are linear.
     pub(crate) rapid_knob: Option<At<RapidKnobName>>,
     /// Words before which the motion has stopped, such as `M8`, `S` for all
-    /// words of a letter, or `MSG` for an active comment; words of no list may
-    /// stop it or not.
+    /// words of a letter, `MSG` for an active comment, or on printers a command such as
+    /// `SET_TMC_*`; words of no list may stop it or not.
     pub(crate) stops: Option<Vec<At<String>>>,
     /// The same for words that do nothing where what they say is in force.
     pub(crate) stops_on_change: Option<Vec<At<String>>>,
@@ -428,4 +433,16 @@ pub(crate) enum UnitName {
     PerSecond,
     PerMinute,
     Share,
+}
+
+/// What an arc without a centre and a radius is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum ArcWithoutCenterName {
+    /// A straight line to its end, at F.
+    Line,
+    /// A line or an alarm, as a parameter of the control says: it counts as a line.
+    LineOrAlarm,
+    /// An alarm.
+    Refused,
 }

@@ -13,7 +13,8 @@ pub(crate) use super::axis_table::{
     TorquePointTable,
 };
 use super::controller_file::{
-    CompensationTable, DistanceName, PointName, PowerOnMotionName, ToolChangeName, UnitsName,
+    ArcWithoutCenterName, CompensationTable, DistanceName, PointName, PowerOnMotionName,
+    ToolChangeName, UnitsName,
 };
 use super::levels::LevelsTable;
 use super::look_ahead::LookAheadTable;
@@ -223,8 +224,11 @@ pub(crate) struct OwnLanguageTable {
     /// How arc centres I J K are meant at power-on.
     pub(crate) arc_centre: Option<DistanceName>,
     /// What a block with axes under G2 or G3 is that has neither a centre nor a radius (Fanuc:
-    /// parameter 3403 bit CIR); default: it is refused.
+    /// parameter 3403 bit CIR); default: as the profile says.
     pub(crate) arc_without_center: Option<ArcWithoutCenterName>,
+    /// How many times as fast as the way in the return of a rigid tap is (Haas: Setting 130;
+    /// Fanuc: parameter 5211, as a factor; Mitsubishi: #1172); default 1.
+    pub(crate) tap_return_factor: Option<AtLeastOne>,
     /// How G41 and G42 shift the path.
     pub(crate) cutter_compensation: Option<CompensationTable>,
     /// G and M words that move no axis and raise no limit on this machine, besides those of
@@ -240,16 +244,6 @@ pub(crate) struct OwnLanguageTable {
     /// Macros of a printer of which nothing is known, besides those of the profile: they may
     /// move, heat, and leave another feed and other modes and limits.
     pub(crate) unknown_macros: Option<Vec<At<String>>>,
-}
-
-/// What an arc without a centre and a radius is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum ArcWithoutCenterName {
-    /// A straight line to its end, at F.
-    Line,
-    /// An alarm.
-    Refused,
 }
 
 /// The spindle.

@@ -3,7 +3,7 @@
 
 use super::controller_file::{DistanceName, UnitsName};
 use super::findings::Findings;
-use super::machine_file::{ArcWithoutCenterName, OwnLanguageTable};
+use super::machine_file::OwnLanguageTable;
 use super::value::{At, NotNegative};
 use super::{listed_words, printer, profile};
 use crate::controller::Language;
@@ -38,8 +38,12 @@ pub(crate) fn take(
     language.escape_mm = given(&own.escape_mm);
     language.groove_return_mm = given(&own.groove_return_mm);
     language.type_2_as_type_1 = own.type_2_as_type_1 == Some(true);
-    language.arc_without_center_is_line =
-        own.arc_without_center == Some(ArcWithoutCenterName::Line);
+    if let Some(arc) = own.arc_without_center {
+        language.arc_without_center = profile::arc_without_center(arc);
+    }
+    if let Some(factor) = &own.tap_return_factor {
+        language.tap_return_factor = Some(factor.value);
+    }
     if let Some(motion) = own.power_on_motion {
         language.power_on_motion = profile::power_on_motion(motion);
     }

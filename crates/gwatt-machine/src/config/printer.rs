@@ -38,6 +38,7 @@ pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> 
         },
         several_commands: table.several_commands.unwrap_or(own.several_commands),
         early_limits: table.early_limits.unwrap_or(own.early_limits),
+        height_map: table.height_map.unwrap_or(own.height_map),
         speed_cap_mm_s: match table.speed_cap {
             Some(SpeedCapName::None) => None,
             None | Some(SpeedCapName::PerSecond) => Some(1.0),
@@ -104,25 +105,32 @@ pub(crate) fn commands(
 ) -> Vec<Command> {
     let mut commands = Vec::new();
     for text in list.into_iter().flatten() {
-        let name = text.value.trim().to_ascii_uppercase();
-        let stem = name.strip_suffix('*').unwrap_or(&name);
-        let fine = !stem.is_empty()
-            && stem
-                .bytes()
-                .all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
-        // A word with a number that no code has: `M9833`, `M620.11`.
-        let odd = word::parse(&name).is_some();
-        if let Some((letter, number)) = word::code(&name) {
-            commands.push(Command::Code(letter, number));
-        } else if !fine && !odd {
+        if let Some(found) = command(&text.value) {
+            commands.push(found);
+        } else {
             let message = format!("\"{}\" is not a command", text.value);
             let help = Some("a word such as \"G29\", or a name such as \"BED_MESH_*\"".to_owned());
             findings.error("machine-word", &text.span, message, help);
-        } else if stem.len() < name.len() {
-            commands.push(Command::Macros(stem.to_owned()));
-        } else {
-            commands.push(Command::Macro(name));
         }
     }
     commands
+}
+
+/// A command by its name; `None` where it is none.
+pub(crate) fn command(text: &str) -> Option<Command> {
+    let name = text.trim().to_ascii_uppercase();
+    if let Some((letter, number)) = word::code(&name) {
+        return Some(Command::Code(letter, number));
+    }
+    let stem = name.strip_suffix('*').unwrap_or(&name);
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
+    let fine = !stem.is_empty() && stem.bytes().all(plain);
+    // A word with a number that no code has: `M9833`, `M620.11`.
+    if !fine && word::parse(&name).is_none() {
+        return None;
+    }
+    Some(match name.strip_suffix('*') {
+        Some(stem) => Command::Macros(stem.to_owned()),
+        None => Command::Macro(name),
+    })
 }

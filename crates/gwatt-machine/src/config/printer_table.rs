@@ -15,6 +15,9 @@ pub(crate) struct PrinterTable {
     /// Whether limits that the program sets (M201, M203, M204) may act on the move before them
     /// already, unless a line with a motion word stands in between; default false.
     pub(crate) early_limits: Option<bool>,
+    /// Whether G29 with S1 to S3 loads, drops or saves the map of heights, and moves nothing;
+    /// default false.
+    pub(crate) height_map: Option<bool>,
     /// Unit of M203; default per-second.
     pub(crate) speed_cap: Option<SpeedCapName>,
     /// Whether some versions take M201, M203 and M204 in mm after G20 too, others in

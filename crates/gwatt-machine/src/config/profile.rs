@@ -1,10 +1,10 @@
 //! The profile's structs to the controller.
 
 use super::controller_file::{
-    ArcRuleName, ArgumentName, CallBlockName, CompensationTable, ControllerFile, CornerName,
-    DistanceName, DwellTable, FamilyName, FeedName, KnobTable, LanguageTable, LatheName, LeadName,
-    PlannerTable, PointName, PowerOnMotionName, RapidJointName, RapidKnobName, SpindleWaitName,
-    TargetName, ToolChangeName, UnitName, UnitsName,
+    ArcRuleName, ArcWithoutCenterName, ArgumentName, CallBlockName, CompensationTable,
+    ControllerFile, CornerName, DistanceName, DwellTable, FamilyName, FeedName, KnobTable,
+    LanguageTable, LatheName, LeadName, PlannerTable, PointName, PowerOnMotionName, RapidJointName,
+    RapidKnobName, SpindleWaitName, TargetName, ToolChangeName, UnitName, UnitsName,
 };
 use super::findings::Findings;
 use super::listed_words::{axes_named, ignored};
@@ -12,17 +12,18 @@ use super::look_ahead::look_ahead;
 use super::named_knob;
 use super::one_letter::one_letter;
 use super::path_name::{path_mode, rapid_path};
+use super::printer::command;
 use super::value::At;
 use super::word;
 use crate::axis::AxisId;
 use crate::controller::{
-    ArcRule, CompensationCorner, CompensationLead, Controller, CutterCompensation, Dialect,
-    Language, Lathe, Planner, Point, PowerOnMotion, RapidJoint, RapidKnob, RapidPath, SpindleWait,
-    ToolChange,
+    ArcRule, ArcWithoutCenter, CompensationCorner, CompensationLead, Controller,
+    CutterCompensation, Dialect, Language, Lathe, Planner, Point, PowerOnMotion, RapidJoint,
+    RapidKnob, RapidPath, SpindleWait, ToolChange,
 };
 use crate::family::Family;
 use crate::knob::{Knob, KnobArgument, KnobTarget, KnobUnit};
-use crate::queue::{MESSAGE, MESSAGES, Queue, QueueWord};
+use crate::queue::{MESSAGE, MESSAGES, Queue, QueueEffect, QueueWord};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Makes a controller; all mistakes go to the findings, and with any of them
@@ -112,7 +113,10 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         escape_mm: None,
         groove_return_mm: None,
         type_2_as_type_1: false,
-        arc_without_center_is_line: false,
+        arc_without_center: (table.arc_without_center)
+            .map_or(ArcWithoutCenter::Refused, arc_without_center),
+        tap_return_factor: None,
+        moves_in_machine_at_rapid: table.moves_in_machine_at_rapid.unwrap_or(false),
         arc_tolerance_mm: table
             .arc_tolerance_mm
             .as_ref()
@@ -123,6 +127,14 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
             .unwrap_or_else(|| family.facts().kept_variables.into_iter().collect()),
         dialect: dialect(table),
     })
+}
+
+pub(crate) fn arc_without_center(name: ArcWithoutCenterName) -> ArcWithoutCenter {
+    match name {
+        ArcWithoutCenterName::Line => ArcWithoutCenter::Line,
+        ArcWithoutCenterName::LineOrAlarm => ArcWithoutCenter::LineOrAlarm,
+        ArcWithoutCenterName::Refused => ArcWithoutCenter::Refused,
+    }
 }
 
 /// The word for exact stop in one block.
@@ -255,32 +267,38 @@ fn planner(findings: &mut Findings<'_>, table: &PlannerTable) -> Option<Planner>
 
 /// Which words stop the motion.
 fn queue(findings: &mut Findings<'_>, table: &PlannerTable) -> Queue {
-    let mut list = |words: &Option<Vec<At<String>>>| {
-        let texts = words.iter().flatten();
-        texts
-            .filter_map(|text| queue_word(findings, text))
-            .collect()
+    let mut names = Vec::new();
+    let mut list = |words: &Option<Vec<At<String>>>, effect| {
+        let mut codes = Vec::new();
+        for text in words.iter().flatten() {
+            if let Some(word) = queue_word(&text.value) {
+                codes.push(word);
+            } else if let Some(name) = command(&text.value) {
+                names.push((name, effect));
+            } else {
+                let message = format!("\"{}\" is not a program word", text.value);
+                let help =
+                    "such as \"M8\", \"S\" for every S, \"MSG\", or a command such as \"SET_LED*\"";
+                findings.error("machine-word", &text.span, message, Some(help.to_owned()));
+            }
+        }
+        codes
     };
     Queue {
-        stops: list(&table.stops),
-        stops_on_change: list(&table.stops_on_change),
-        passes: list(&table.passes),
-        joins: list(&table.joins),
+        stops: list(&table.stops, QueueEffect::Stop),
+        stops_on_change: list(&table.stops_on_change, QueueEffect::StopOnChange),
+        passes: list(&table.passes, QueueEffect::Pass),
+        joins: list(&table.joins, QueueEffect::Join),
+        names,
     }
 }
 
-fn queue_word(findings: &mut Findings<'_>, text: &At<String>) -> Option<QueueWord> {
-    let message = MESSAGES.iter().position(|name| *name == text.value);
-    let found = message
+fn queue_word(text: &str) -> Option<QueueWord> {
+    let message = MESSAGES.iter().position(|name| *name == text);
+    let (letter, number) = message
         .map(|index| (MESSAGE, Some(index as u16)))
-        .or_else(|| word::code(&text.value).map(|(letter, number)| (letter, Some(number))))
-        .or_else(|| word::letter(&text.value).map(|letter| (letter, None)));
-    let Some((letter, number)) = found else {
-        let message = format!("\"{}\" is not a program word", text.value);
-        let help = Some("such as \"M8\", \"S\" for every S, or \"MSG\"".to_owned());
-        findings.error("machine-word", &text.span, message, help);
-        return None;
-    };
+        .or_else(|| word::code(text).map(|(letter, number)| (letter, Some(number))))
+        .or_else(|| word::letter(text).map(|letter| (letter, None)))?;
     Some(QueueWord { letter, number })
 }
 

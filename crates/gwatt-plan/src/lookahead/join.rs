@@ -11,7 +11,7 @@ use super::blend::Axes;
 use super::element::{Element, Joint};
 use super::vector::{Vector, add, dot, length, scale, sub, unit};
 use gwatt_machine::{AXES, AxisValues};
-use std::f64::consts::PI;
+use std::f64::consts::TAU;
 
 /// Points that are put together, at most: one more ends the line.
 const POINTS_MAX: usize = 101;
@@ -175,10 +175,16 @@ pub(super) fn chords<T: Copy>(element: &Element<T>, axes: &Axes) -> Option<[Elem
     let Joint::Blend { join_mm, .. } = element.joint else {
         return None;
     };
-    let half_rad = 0.5 * curve.sweep_rad;
+    // Full turns are not looked at, and are lost in the lines (`chord_deviation`).
+    let turned_rad = curve.sweep_rad % TAU;
+    let sweep_rad = if turned_rad.abs() <= 1e-5 {
+        curve.sweep_rad.signum() * TAU
+    } else {
+        turned_rad
+    };
+    let half_rad = 0.5 * sweep_rad;
     let bulge_mm = curve.radius_mm * (1.0 - libm::cos(half_rad));
-    let flat = curve.plane == [0, 1] && half_rad.abs() <= PI;
-    if !flat || bulge_mm >= join_mm {
+    if curve.plane != [0, 1] || bulge_mm >= join_mm {
         return None;
     }
     let tangent = unit([element.start[0], element.start[1], 0.0])?;
@@ -188,10 +194,10 @@ pub(super) fn chords<T: Copy>(element: &Element<T>, axes: &Axes) -> Option<[Elem
     let at = |turned_rad: f64| {
         let (sin, cos) = libm::sincos(turned_rad.abs());
         let flat = add(scale(outward, cos - 1.0), scale(tangent, sin));
-        let rise = rise_mm * turned_rad / curve.sweep_rad;
+        let rise = rise_mm * turned_rad / sweep_rad;
         add(scale(flat, curve.radius_mm), [0.0, 0.0, rise])
     };
-    let (middle, end) = (at(half_rad), at(curve.sweep_rad));
+    let (middle, end) = (at(half_rad), at(sweep_rad));
     // The other axes move by half with each.
     let mut others = element.start.map(|change| 0.5 * change * element.length_mm);
     others[..3].fill(0.0);

@@ -37,6 +37,9 @@ pub(super) struct Pending<T> {
     /// It may be entered faster than it runs, the change of pace comes late, and it is too
     /// short to come down to its own.
     pub lags: bool,
+    /// What is before it may have ended before it comes, so that it keeps all of its
+    /// acceleration.
+    pub comes_late: bool,
     /// At some lower override it may keep all of its acceleration at a joint in which it
     /// overlaps here.
     pub keeps_all: bool,
@@ -71,6 +74,7 @@ impl<T: Copy> Pending<T> {
             expected_mm_s: element.feed_mm_s,
             pace_before: element.pace,
             lags: false,
+            comes_late: false,
             keeps_all: false,
             late_mm_s: 0.0,
             kink_before: 0.0,
@@ -94,7 +98,7 @@ impl<T: Copy> Pending<T> {
             element.feed_mm_s / element.pace * feed_ratio
         };
         (self.pace_before, self.lags, self.late_mm_s) = (element.pace, false, 0.0);
-        self.keeps_all = false;
+        (self.comes_late, self.keeps_all) = (false, false);
         self.from_mm = 0.0;
         self.length_mm = element.length_mm;
         self.sweep_rad = element.curve.map_or(0.0, |curve| curve.sweep_rad.abs());
@@ -114,6 +118,11 @@ impl<T: Copy> Pending<T> {
     /// The speed that it runs at.
     pub fn run_speed(&self) -> f64 {
         self.element.feed_mm_s.min(self.max_speed)
+    }
+
+    /// Whether it begins at rest and may take no longer than `least_s`.
+    pub fn is_brief(&self, least_s: f64) -> bool {
+        self.entry2 == 0.0 && 4.0 * self.element.length_mm <= self.accel() * least_s * least_s
     }
 
     /// How far lower overrides may go beyond its plan.

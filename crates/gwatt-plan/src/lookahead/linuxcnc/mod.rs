@@ -30,6 +30,9 @@ use optimiser::Optimiser;
 pub(super) const RENEWED: usize = optimiser::HITS;
 /// Cycles that an element lasts at least.
 const CYCLES_MIN: f64 = 1.02;
+/// Servo cycles in which an element that begins at rest may have ended before the next one comes
+/// into the queue: recorded at two, and not at four.
+const BRIEF_CYCLES: f64 = 6.0;
 /// Cycles after which a change of pace acts: HAL hands it on within one, and the planner takes
 /// it in the next.
 pub const LATE_CYCLES: f64 = 2.0;
@@ -122,7 +125,9 @@ impl<T: Copy> LinuxCnc<T> {
             self.pending = Some(next);
             return;
         };
+        let brief = before.is_brief(BRIEF_CYCLES * self.cycle_s);
         let way = self.way(&mut before, &mut next);
+        next.comes_late = brief && !matches!(way, Way::Stop);
         if before.element.pace != next.element.pace {
             self.change_pace(&mut before, &mut next, &way);
         }
@@ -338,7 +343,7 @@ impl<T: Copy> LinuxCnc<T> {
             first: if consumed { before.first } else { tag },
             next: Some(next.first),
             piece,
-            certain: true,
+            certain: !next.comes_late,
             rests: false,
             overlap_s: 0.0,
             overlaps: false,
@@ -421,7 +426,8 @@ impl<T: Copy> LinuxCnc<T> {
             next: None,
             piece: of.piece(),
             // With limits of jerk it is not modelled.
-            certain: !of.lags && (!of.overlaps() || of.element.jerk_mm_s3 == f64::INFINITY),
+            certain: !(of.lags || of.comes_late)
+                && (!of.overlaps() || of.element.jerk_mm_s3 == f64::INFINITY),
             rests: of.rests,
             overlap_s: of.overlap_s(last),
             overlaps: of.overlaps(),
