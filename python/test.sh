@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Builds the wheel, installs it into a fresh virtual environment and runs the tests there. Needs
-# maturin, and packages of the index. The profile: dev, or what is given.
+# maturin, and packages of the index. The profile: test, or what is given.
 set -euo pipefail
 cd "$(dirname "$0")"
-profile=${1:-dev}
+profile=${1:-test}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

@@ -9,6 +9,9 @@ use gwatt::plan::{Overrides, plan};
 use gwatt::power::{Demand, PowerModel, Want};
 use proptest::prelude::*;
 
+use crate::machines::machine_from;
+use crate::near::assert_near;
+
 fn demand(machine: &Machine, mv: &Move) -> Demand {
     let plan = plan(machine, mv, Overrides::default());
     PowerModel::new(machine).demand(mv, &plan, Want::ALL)
@@ -16,10 +19,7 @@ fn demand(machine: &Machine, mv: &Move) -> Demand {
 
 #[track_caller]
 fn close(found: f64, expected: f64) {
-    assert!(
-        (found - expected).abs() <= 1e-9 * expected.abs(),
-        "{found}, not {expected}"
-    );
+    assert_near(found, expected, 1e-9 * expected.abs());
 }
 
 /// 100 kg ± 10 %, 5 m/s² to 0.5 m/s, 100 N ± 30 %: 110 kg and 130 N draw most; 110 kg,
@@ -71,10 +71,7 @@ fn file(limits: &str, x: &str) -> Machine {
          efficiency = 0.9\n{x}\n\
          [axes.Y]\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 100\n[limits]\n{limits}\n"
     );
-    match Machine::from_toml("test.toml", &text) {
-        Ok((machine, _)) => machine,
-        Err(errors) => panic!("{errors:?}"),
-    }
+    machine_from(&text)
 }
 
 #[test]

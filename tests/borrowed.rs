@@ -2,26 +2,16 @@
 //! is not there is skipped, and said to be.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use gwatt::interpret::Limits;
 use gwatt::machine::{AXES, AxisValues};
 use gwatt::pipeline::{self, Options, Reading};
 
+use crate::evidence::shared;
 use crate::listing::{listing, machine, machine_of};
 
-fn corpus(path: &str) -> Option<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let found = [root.join("../shared"), root.join("../../shared")]
-        .map(|shared| shared.join("corpus").join(path))
-        .into_iter()
-        .find(|path| path.exists());
-    match found {
-        Some(_) => crate::evidence::runs(),
-        None => crate::evidence::cannot_run("the programs of others are not there"),
-    }
-    found
-}
+const PROGRAMS: &str = "the programs of others";
 
 fn text(path: &Path) -> String {
     String::from_utf8_lossy(&std::fs::read(path).expect("a file")).into_owned()
@@ -31,7 +21,9 @@ fn text(path: &Path) -> String {
 #[test]
 fn the_flow_test_of_fluidnc_passes() {
     let path = "parser_tests/bdring__FluidNC/examples/gcode_conditionals_test.nc";
-    let Some(path) = corpus(path) else { return };
+    let Some(path) = shared(&format!("corpus/{path}"), PROGRAMS) else {
+        return;
+    };
     // Comments do not nest in grbl 1.1.
     let program = text(&path)
         .replace("))\n", ")\n")
@@ -89,7 +81,10 @@ const REFUSED: [&str; 4] = [
 /// which works out values and sums up increments, but no arcs.
 #[test]
 fn programs_of_cead_reach_the_places_of_their_tables() {
-    let Some(folder) = corpus("siemens/CEAD-group__nc-gcode-interpreter/examples") else {
+    let Some(folder) = shared(
+        "corpus/siemens/CEAD-group__nc-gcode-interpreter/examples",
+        PROGRAMS,
+    ) else {
         return;
     };
     let machine = machine_of("siemens", "", "XYZUVWE", "ABC");

@@ -6,15 +6,12 @@ mod random;
 mod series;
 mod surface;
 
-use std::fmt::Write as _;
 use std::io::Cursor;
 
 use crate::rows::Rows;
 use gwatt::interpret::{MoveKind, Reading, Start};
 use gwatt::machine::Machine;
-use gwatt::pipeline::{
-    Allowed, Law, LimitOptions, LimitSummary, Options, Row, Strategy, Summary, analyze, limit,
-};
+use gwatt::pipeline::{Allowed, LimitOptions, LimitSummary, Options, Row, Summary, analyze, limit};
 use gwatt::plan::SpindleDrive;
 use gwatt::plan::period::{Motion, Ramp};
 use gwatt::power::{SpindlePower, spindle_run};
@@ -25,25 +22,13 @@ const FULL_W: f64 = 9_869.604_401_089_358;
 /// A machine under `controller`: X and Z of 1000 kg, 1 m/s² and 1 m/s, and a
 /// spindle; `rest` stands at its end.
 fn machine(controller: &str, converter: &str, spindle: &str, rest: &str) -> Machine {
-    let mut text = format!(
+    machine_from(&format!(
         "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n\
-         [converter]\npeak_power_w = 1e5\nregen_power_w = 1e5\n{converter}\n"
-    );
-    for axis in ["X", "Y", "Z"] {
-        let _ = writeln!(
-            text,
-            "[axes.{axis}]\nrapid_mm_min = 60000\naccel_mm_s2 = 1000\nmass_kg = 1000"
-        );
-    }
-    let _ = writeln!(
-        text,
-        "[spindle]\ninertia_kg_m2 = 0.1\nmax_rpm = 3000\naccel_time_s = 1\n{spindle}\n\
-         [limits]\nmargin = 0\n{rest}"
-    );
-    match Machine::from_toml("test.toml", &text) {
-        Ok((machine, _)) => machine,
-        Err(found) => panic!("{found:?}"),
-    }
+         [converter]\npeak_power_w = 1e5\nregen_power_w = 1e5\n{converter}\n{}\
+         [spindle]\ninertia_kg_m2 = 0.1\nmax_rpm = 3000\naccel_time_s = 1\n{spindle}\n\
+         [limits]\nmargin = 0\n{rest}\n",
+        linear_axes("XYZ", [60000.0, 1000.0, 1000.0], "")
+    ))
 }
 
 fn iso(spindle: &str) -> Machine {
@@ -60,17 +45,23 @@ fn run(machine: &Machine, program: &str, options: &Options) -> (Vec<Row>, Summar
     )
 }
 
+/// The machine with these limits: drawn and fed back.
+fn with_limits(machine: &Machine, limits_w: [f64; 2]) -> Machine {
+    let mut limited = machine.clone();
+    for converter in &mut limited.converters {
+        converter.peak_power_w = limits_w[0];
+        converter.regen_power_w = Some(limits_w[1]);
+    }
+    limited
+}
+
 fn rows(machine: &Machine, program: &str) -> Vec<Row> {
     run(machine, program, &Options::default()).0
 }
 
 #[track_caller]
 fn near(found: f64, expected: f64) {
-    let error = (found - expected).abs();
-    assert!(
-        error <= 2e-7 * expected.abs().max(1e-6),
-        "{found}, not {expected}"
-    );
+    assert_near(found, expected, 2e-7 * expected.abs().max(1e-6));
 }
 
 #[track_caller]
@@ -84,6 +75,10 @@ fn peaks(rows: &[Row], expected: &[(MoveKind, f64)]) {
 }
 
 use MoveKind::{Dwell, Feed, Rapid, Tap};
+
+use crate::machines::{linear_axes, machine_from};
+use crate::near::assert_near;
+use crate::runs::WITH_FEEDS;
 
 /// The run-up ends with the ramp of the rapid: 9869.6 W and 1000 W at once.
 #[test]
@@ -250,15 +245,7 @@ fn surface_speed_where_the_axis_stands_or_is_not_known() {
         },
         ..Options::default()
     };
-    let how = LimitOptions {
-        strategy: Strategy::Optimal,
-        law: Law::Exact,
-        allowed: Allowed {
-            feed: true,
-            ..Allowed::NOTHING
-        },
-        ..LimitOptions::USUAL
-    };
+    let how = WITH_FEEDS;
     let (program, mut out) = (format!("G21 G90\n{facing}M2\n"), Vec::new());
     let summary = limit(Cursor::new(&program), &lathe, &options, how, &mut out, None).unwrap();
     assert!(summary.certified, "{:?}", summary.reasons);
@@ -335,8 +322,6 @@ fn an_unknown_start_counts_as_the_worst() {
 
 fn limited(machine: &Machine, program: &str, allow_feed: bool) -> (String, LimitSummary, Vec<Row>) {
     let how = LimitOptions {
-        strategy: Strategy::Optimal,
-        law: Law::Exact,
         allowed: Allowed {
             feed: allow_feed,
             ..Allowed::NOTHING

@@ -36,6 +36,8 @@ use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
 
+use crate::shop::{ended, gwatt};
+
 /// Does not fit on the default machine; fits after `limit`.
 const STEEP: &str = "G21 G90 G94 G17\nG0 X200 Y200 Z200\nG1 F100 X210\nM30\n";
 const GENTLE: &str = "G21 G90 G94\nG1 F100 X10\nM30\n";
@@ -77,12 +79,7 @@ impl Shop {
     }
 
     fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_gwatt"));
-        command
-            .args(arguments)
-            .current_dir(self.path())
-            .stdin(Stdio::null());
-        command
+        gwatt(self.path(), arguments.iter().copied())
     }
 
     /// Runs gwatt on the default machine, named so that no note is printed.
@@ -117,10 +114,11 @@ struct Ran {
 
 impl From<Output> for Ran {
     fn from(output: Output) -> Self {
+        let (code, stdout, stderr) = ended(output);
         Self {
-            code: output.status.code().unwrap(),
-            stdout: String::from_utf8(output.stdout).unwrap(),
-            stderr: String::from_utf8(output.stderr).unwrap(),
+            code,
+            stdout,
+            stderr,
         }
     }
 }

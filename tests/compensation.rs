@@ -6,41 +6,17 @@ mod refusals;
 use std::fmt::Write as _;
 
 use gwatt::interpret::{Move, MoveKind};
-use gwatt::machine::{ALL_AXES, Machine};
+use gwatt::machine::ALL_AXES;
 use gwatt::pipeline::{self, Failure, Options};
 use insta::assert_snapshot;
 use proptest::prelude::*;
 
 use crate::limit::{EXACT_STOP, RIG, Rig};
-
-fn machine(controller: &str) -> Machine {
-    let mut text = format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e5\n"
-    );
-    for axis in ["X", "Y", "Z"] {
-        let _ = writeln!(
-            text,
-            "[axes.{axis}]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10"
-        );
-    }
-    text.push_str("[axes.A]\nkind = \"rotary\"\nrapid_deg_min = 3600\naccel_deg_s2 = 500\ninertia_kg_m2 = 1\n");
-    Machine::from_toml("test.toml", &text)
-        .expect("a valid machine")
-        .0
-}
+use crate::listing::machine_of;
+use crate::runs::moves_of;
 
 fn read(controller: &str, options: &Options, program: &str) -> (Vec<Move>, Option<Failure>) {
-    let mut moves = Vec::new();
-    let result = pipeline::moves(
-        std::io::Cursor::new(program),
-        &machine(controller),
-        options,
-        &mut |mv, _| {
-            moves.push(mv.clone());
-            Ok(())
-        },
-    );
-    (moves, result.err())
+    moves_of(&machine_of(controller, "", "XYZ", "A"), options, program)
 }
 
 /// The moves, a line each: line, kind, ends of the axes that move, centre and

@@ -5,29 +5,27 @@ use std::fmt::Write as _;
 use std::fs;
 use std::io::Cursor;
 use std::path::Path;
-use std::process::Command;
 
 use gwatt::contour::{ContourRow, ContourSink, ContourSummary, PlotPoint, Settings, Tracer};
 use gwatt::identify::{Factor, TransferFunction};
 use gwatt::machine::Machine;
 use gwatt::pipeline::{Failure, Options, Stretch, analyze, motion};
 
+use crate::identify::pair;
+use crate::machines::{linear_axes, machine_from};
+use crate::shop::{ended, gwatt};
+
 /// A machine of X, Y and Z with these tables after the axes'.
 fn machine(controller: &str, tables: &str) -> Machine {
-    let mut text = format!(
-        "schema = 1\nname = \"mill\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 9000\nbase_load_w = 100\n"
-    );
-    for (letter, mass) in [("X", 300), ("Y", 200), ("Z", 100)] {
-        let _ = write!(
-            text,
-            "[axes.{letter}]\nrapid_mm_min = 24000\naccel_mm_s2 = 2000\nmass_kg = {mass}\ncoulomb_n = 200\n"
-        );
-    }
-    text += tables;
-    match Machine::from_toml("mill.toml", &text) {
-        Ok((machine, _)) => machine,
-        Err(errors) => panic!("{errors:?}"),
-    }
+    let axis =
+        |letter: &str, mass_kg| linear_axes(letter, [24000.0, 2000.0, mass_kg], "coulomb_n = 200");
+    machine_from(&format!(
+        "schema = 1\nname = \"mill\"\ncontroller = \"{controller}\"\n[converter]\n\
+         peak_power_w = 9000\nbase_load_w = 100\n{}{}{}{tables}",
+        axis("X", 300.0),
+        axis("Y", 200.0),
+        axis("Z", 100.0)
+    ))
 }
 
 #[derive(Default)]
@@ -104,13 +102,6 @@ fn unequal_loops_bend_a_slanted_line() {
 }
 
 const CIRCLE: &str = "G21 G90 G94 G17\nG0 X10\nG3 X10 Y0 I-10 J0 F3000\nM30\n";
-
-fn pair(hz: f64, damping: f64) -> Factor {
-    Factor::Pair {
-        omega_rad_s: TAU * hz,
-        damping,
-    }
-}
 
 /// How far a circle is out of round, and how much smaller, that both axes run by
 /// their responses at a steady speed.
@@ -327,19 +318,8 @@ fn blended_corners_count_against_the_path_that_is_run() {
 fn files_of_contour_are_whole() {
     let shop = tempfile::tempdir().unwrap();
     let folder = shop.path();
-    let run = |arguments: &[&str]| {
-        let output = Command::new(env!("CARGO_BIN_EXE_gwatt"))
-            .args(arguments)
-            .current_dir(folder)
-            .output()
-            .unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        (
-            output.status.code().unwrap(),
-            text(output.stdout),
-            text(output.stderr),
-        )
-    };
+    let run =
+        |arguments: &[&str]| ended(gwatt(folder, arguments.iter().copied()).output().unwrap());
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     for name in ["circle.ngc", "circle-mill.toml"] {
         fs::copy(examples.join(name), folder.join(name)).unwrap();

@@ -6,6 +6,8 @@ use gwatt::interpret::Move;
 use gwatt::machine::{Brake, Capacitor, Continuous, Converter, Machine, Overload, PathMode};
 use gwatt::power::{Assessment, Assessor, Certificate, Measure, Rating, Want};
 
+use crate::near::assert_near;
+
 /// X alone: 100 kg at 5 m/s² to 0.5 m/s. Its ramp lasts 0.1 s, in which power
 /// rises evenly to 250 W; nothing is drawn at speed, and braking gives it all
 /// back. 1 kW may be drawn, 500 W fed back.
@@ -41,8 +43,9 @@ fn rating(machine: &Machine, moves: &[Move]) -> Rating {
     ratings[0]
 }
 
-fn close(a: f64, b: f64) {
-    assert!((a - b).abs() <= 1e-8 * b.abs().max(1e-3), "{a} is not {b}");
+#[track_caller]
+fn close(found: f64, expected: f64) {
+    assert_near(found, expected, 1e-8 * expected.abs().max(1e-3));
 }
 
 fn continuous(power_w: f64, window_s: f64) -> Continuous {

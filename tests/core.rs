@@ -8,12 +8,11 @@
 //! `(P + max(|P|, |C|))/2`, and of two axes that are alike the faster one has the larger force:
 //! then `|C|` is no more than the sum of the largest speeds times the largest forces.
 
-use std::io::Cursor;
-
 use gwatt::machine::Machine;
-use gwatt::pipeline::{Certificate, Options, analyze};
+use gwatt::pipeline::{Certificate, Options};
 
-use crate::rows::Rows;
+use crate::machines::{linear_axes, machine_from};
+use crate::runs::rows_with;
 
 const ACCEL_M_S2: f64 = 5.0;
 const COULOMB_N: f64 = 8.0;
@@ -21,21 +20,17 @@ const VISCOUS: f64 = 20.0;
 const EFFICIENCY: f64 = 0.8;
 
 fn machine(masses_kg: [f64; 2]) -> Machine {
-    let axis = |letter: char, mass_kg: f64| {
-        format!(
-            "[axes.{letter}]\nkind = \"linear\"\nrapid_mm_min = 30000\naccel_mm_s2 = {}\n\
-             mass_kg = {mass_kg}\ncoulomb_n = {COULOMB_N}\nviscous_n_s_m = {VISCOUS}\n\
-             efficiency = {EFFICIENCY}\n",
-            1e3 * ACCEL_M_S2
-        )
+    let friction =
+        format!("coulomb_n = {COULOMB_N}\nviscous_n_s_m = {VISCOUS}\nefficiency = {EFFICIENCY}");
+    let axis = |letter: &str, mass_kg: f64| {
+        linear_axes(letter, [30000.0, 1e3 * ACCEL_M_S2, mass_kg], &friction)
     };
-    let text = format!(
+    machine_from(&format!(
         "schema = 1\nname = \"core\"\ncontroller = \"iso\"\n[converter]\npeak_power_w = 1e6\n{}{}\
          [limits]\nmargin = 0\n",
-        axis('X', masses_kg[0]),
-        axis('Y', masses_kg[1])
-    );
-    Machine::from_toml("core.toml", &text).unwrap().0
+        axis("X", masses_kg[0]),
+        axis("Y", masses_kg[1])
+    ))
 }
 
 /// The largest robust bound of a move between two of its kind.
@@ -46,9 +41,8 @@ fn bound_w(machine: &Machine, to: [f64; 2], feed_mm_min: f64) -> f64 {
         certificate: Some(Certificate::Robust),
         ..Options::default()
     };
-    let mut rows = Rows::default();
-    analyze(Cursor::new(program), machine, &options, Some(&mut rows)).unwrap();
-    rows.0.iter().map(|row| row.peak_w).fold(0.0, f64::max)
+    let rows = rows_with(machine, &options, &program);
+    rows.iter().map(|row| row.peak_w).fold(0.0, f64::max)
 }
 
 /// Places from −1 to 1, the ends among them.

@@ -18,22 +18,7 @@ use gwatt::pipeline::{self, Failure, Options};
 use insta::assert_snapshot;
 
 use crate::limit::{EXACT_STOP, RIG, Rig};
-
-/// `more` goes into the machine's file.
-fn machine(controller: &str, more: &str) -> Machine {
-    let mut text = format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n{more}[converter]\npeak_power_w = 1e5\n"
-    );
-    for axis in ["X", "Y", "Z"] {
-        let _ = writeln!(
-            text,
-            "[axes.{axis}]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10"
-        );
-    }
-    Machine::from_toml("test.toml", &text)
-        .expect("a valid machine")
-        .0
-}
+use crate::listing::{errors_of, machine_of};
 
 /// The moves, a line each, or the errors of a refusal.
 fn moves_on(machine: &Machine, table: &str, program: &str) -> String {
@@ -60,24 +45,19 @@ fn moves_on(machine: &Machine, table: &str, program: &str) -> String {
         out.push('\n');
         Ok(())
     });
-    if let Err(Failure::Refused { diagnostics, .. }) = result {
-        out.clear();
-        for found in diagnostics {
-            if found.severity == gwatt::diagnostic::Severity::Error {
-                let _ = writeln!(out, "{} {}: {}", found.line, found.rule, found.message);
-            }
-        }
+    if let Err(failure @ Failure::Refused { .. }) = result {
+        out = errors_of(&failure);
     }
     out.replace("-0.0000", "0.0000")
 }
 
 fn moves(controller: &str, program: &str) -> String {
-    moves_on(&machine(controller, ""), "", program)
+    moves_on(&machine_of(controller, "", "XYZ", ""), "", program)
 }
 
 fn type_b() -> Machine {
     let language = "[language]\ncutter_compensation = { corner = \"line\", lead = \"corner\" }\n";
-    machine("fanuc", language)
+    machine_of("fanuc", language, "XYZ", "")
 }
 
 /// B-63944EN, "Details of Cutter Compensation", "Tool Movement in Offset Mode".
@@ -101,7 +81,7 @@ fn outside_corners_of_90_degrees() {
     // The same by a tool table (D is a diameter there), by H, by D of a block
     // before, and from the other side with a negative radius.
     let table = "T1 D10\n";
-    let fanuc = machine("fanuc", "");
+    let fanuc = machine_of("fanuc", "", "XYZ", "");
     let plain = program.replace("G10 L12 P1 R5.\n", "M8\n");
     assert_eq!(moves_on(&fanuc, table, &plain), square);
     assert_eq!(moves("fanuc", &program.replace("G41 D1", "G41 H1")), square);
@@ -200,7 +180,7 @@ fn the_nose_of_a_lathe_tool() {
     // Nose radius 0.8, imaginary nose 3 (towards -X and -Z): along Z and along
     // X the tip is on the contour; at the ends it stays off by the radius.
     let program = "T0303\nG98 G0 X60. Z10.\nG42 G1 X40. Z2. F100\nZ-20.\nX60.\nG40 X70.\nM30\n";
-    let lathe = machine("fanuc-lathe", "");
+    let lathe = machine_of("fanuc-lathe", "", "XYZ", "");
     assert_snapshot!(moves_on(&lathe, "T3 D1.6 Q3\n", program), @r"
 2 rapid X30.0000 Z10.0000
 3 feed X20.0000 Z1.2000 F100.00
@@ -319,7 +299,7 @@ M2
 #[test]
 fn what_cannot_be_compensated() {
     let table = "T1 D10\nT2 D4\n";
-    let fanuc = machine("fanuc", "");
+    let fanuc = machine_of("fanuc", "", "XYZ", "");
     let mut all = String::new();
     for rest in [
         "G41 D3 X10.",
@@ -362,11 +342,16 @@ fn what_cannot_be_compensated() {
         ),
     ] {
         let program = "G0 X0.\nG41 D1 G1 X10. F600\nY10.\nG40 X0.\nM30\n";
-        assert_eq!(moves_on(&machine(controller, ""), table, program), said);
+        assert_eq!(
+            moves_on(&machine_of(controller, "", "XYZ", ""), table, program),
+            said
+        );
     }
     // A Mitsubishi looks beyond three blocks without motion.
     let three = "G1 F600\nG41 D1 X10.\nY10.\nM8\nM9\nM8\nX20.\nG40 X0.\nM30\n";
-    assert!(moves_on(&machine("mitsubishi", ""), table, three).contains("feed X20.0000"));
+    assert!(
+        moves_on(&machine_of("mitsubishi", "", "XYZ", ""), table, three).contains("feed X20.0000")
+    );
 }
 
 #[test]
@@ -393,7 +378,7 @@ fn sinumerik_goes_round_corners_by_arcs_or_to_where_lines_meet() {
     );
     // By the table: the tool of T.
     let table = program.replace("$TC_DP6[1,1]=4.5 $TC_DP15[1,1]=0.5", "M8");
-    let siemens = machine("siemens", "");
+    let siemens = machine_of("siemens", "", "XYZ", "");
     assert_eq!(
         moves_on(&siemens, "T1 D10\n", &table),
         moves("siemens", program)

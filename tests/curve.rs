@@ -3,6 +3,8 @@
 use gwatt::plan::curve::{AccelCurve, CurveError, fastest};
 use gwatt::plan::{Phase, PhaseKind, Profile};
 
+use crate::near::assert_near;
+
 /// Integrates `dv/dt = a(v)` by the classical Runge–Kutta rule: time and length
 /// from `v0` until `v1`, with speed as the variable.
 fn by_steps(accel: impl Fn(f64) -> f64, v0: f64, v1: f64) -> (f64, f64) {
@@ -18,8 +20,9 @@ fn by_steps(accel: impl Fn(f64) -> f64, v0: f64, v1: f64) -> (f64, f64) {
     (t, x)
 }
 
-fn close(a: f64, b: f64) {
-    assert!((a - b).abs() <= 1e-11 * b.abs().max(1e-3), "{a} is not {b}");
+#[track_caller]
+fn close(found: f64, expected: f64) {
+    assert_near(found, expected, 1e-11 * expected.abs().max(1e-3));
 }
 
 /// States inside a phase fit each other and both ends.

@@ -10,26 +10,21 @@ use std::io::Cursor;
 
 use gwatt::diagnostic::Severity;
 use gwatt::interpret::Corner;
-use gwatt::limit::{Law, Strategy};
 use gwatt::machine::Machine;
-use gwatt::pipeline::{self, Allowed, Failure, LimitOptions, Limits, Options, Reading};
+use gwatt::pipeline::{self, Failure, Limits, Options, Reading};
 use insta::assert_snapshot;
+
+use crate::machines::{linear_axes, machine_from, rotary_axes};
+use crate::runs::{WITH_FEEDS, limited, made_to_fit};
 
 /// A machine with X Y Z and a rotary axis A; 10 kg on each linear axis.
 fn machine(controller: &str, peak_power_w: f64) -> Machine {
-    let mut text = format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = {peak_power_w:?}\n"
-    );
-    for axis in ["X", "Y", "Z"] {
-        let _ = writeln!(
-            text,
-            "[axes.{axis}]\nrapid_mm_min = 60000\naccel_mm_s2 = 2000\nmass_kg = 100"
-        );
-    }
-    text += "[axes.A]\nkind = \"rotary\"\nrapid_deg_min = 3600\naccel_deg_s2 = 500\ninertia_kg_m2 = 1\n";
-    Machine::from_toml("test.toml", &text)
-        .expect("a valid machine")
-        .0
+    machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\n\
+         peak_power_w = {peak_power_w:?}\n{}{}",
+        linear_axes("XYZ", [60000.0, 2000.0, 100.0], ""),
+        rotary_axes("A", [3600.0, 500.0, 1.0])
+    ))
 }
 
 /// The moves of a program, a line each: line, kind, X Y Z at the end, feed in
@@ -77,16 +72,6 @@ fn moves_with(controller: &str, program: &str, reading: Reading) -> String {
     }
     out
 }
-
-const HOW: LimitOptions = LimitOptions {
-    strategy: Strategy::Optimal,
-    law: Law::Exact,
-    allowed: Allowed {
-        feed: true,
-        ..Allowed::NOTHING
-    },
-    ..LimitOptions::USUAL
-};
 
 const SPINDLE: &str = "G21 G90 F100 S500 M3\n";
 
@@ -390,19 +375,9 @@ fn repetition_is_bounded() {
 fn limit_leaves_cycles_alone() {
     let machine = machine("iso", 200.0);
     let program =
-        b"G90 S500 M3\nG0 X300 Y300\nZ5\nG98 G81 X310 Z-1 R4 F100\nX320\nG80\nX0 Y0\nM30\n";
-    let mut out = Vec::new();
-    let summary = pipeline::limit(
-        Cursor::new(&program[..]),
-        &machine,
-        &Options::default(),
-        HOW,
-        &mut out,
-        None,
-    )
-    .expect("accepted");
-    assert!(summary.certified, "{:?}", summary.reasons);
-    assert_snapshot!(String::from_utf8(out).unwrap(), @r"
+        "G90 S500 M3\nG0 X300 Y300\nZ5\nG98 G81 X310 Z-1 R4 F100\nX320\nG80\nX0 Y0\nM30\n";
+    let (text, _) = made_to_fit(&machine, &Options::default(), WITH_FEEDS, program);
+    assert_snapshot!(text, @r"
     G90 S500 M3
     G1 X300 Y300 F38183
     G0 Z5
@@ -419,17 +394,9 @@ fn limit_leaves_cycles_alone() {
 #[test]
 fn limit_says_why_a_thread_stays() {
     let machine = machine("linuxcnc", 5.0);
-    let program = b"G61.1 G90 S3000 M3\nG33 Z50 K1\nM2\n";
-    let mut out = Vec::new();
-    let summary = pipeline::limit(
-        Cursor::new(&program[..]),
-        &machine,
-        &Options::default(),
-        HOW,
-        &mut out,
-        None,
-    )
-    .expect("accepted");
+    let program = "G61.1 G90 S3000 M3\nG33 Z50 K1\nM2\n";
+    let done = limited(&machine, &Options::default(), WITH_FEEDS, program);
+    let (_, summary) = done.expect("accepted");
     assert!(!summary.certified);
     assert_eq!(
         summary.reasons[0].message,

@@ -8,6 +8,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::layers::root;
+use crate::machines::machine_from;
+use crate::random::Dice;
+
 /// Largest program, bytes.
 const PROGRAM_BYTES: usize = 10_000;
 /// Memory that a run may take, KiB.
@@ -127,30 +131,6 @@ const RUNS: &[&[&str]] = &[
 /// Loops that do not end have a bound of their own, which is high.
 const BOUNDED: &[&str] = &["--max-moves", "200000", "--max-idle-lines", "200000"];
 
-struct Chance(u64);
-
-impl Chance {
-    fn next(&mut self) -> u64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        self.0 >> 33
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.next() % count.max(1) as u64) as usize
-    }
-
-    fn of<'a, T>(&mut self, list: &'a [T]) -> &'a T {
-        &list[self.below(list.len())]
-    }
-}
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
 /// All files below a folder that end so.
 fn files(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
@@ -176,7 +156,7 @@ fn texts(folders: &[&str], endings: &[&str]) -> Vec<String> {
 }
 
 /// A line with one of its numbers replaced.
-fn with_number(line: &str, chance: &mut Chance) -> String {
+fn with_number(line: &str, dice: &mut Dice) -> String {
     let is_number = |c: char| c.is_ascii_digit() || "+-.".contains(c);
     let mut starts = Vec::new();
     let mut before = ' ';
@@ -189,31 +169,31 @@ fn with_number(line: &str, chance: &mut Chance) -> String {
     if starts.is_empty() {
         return line.to_owned();
     }
-    let start = *chance.of(&starts);
+    let start = *dice.of(&starts);
     let (head, tail) = line.split_at(start);
     let rest = tail.trim_start_matches(is_number);
-    format!("{head}{}{rest}", chance.of(NUMBERS))
+    format!("{head}{}{rest}", dice.of(NUMBERS))
 }
 
-fn mutated(programs: &[String], chance: &mut Chance) -> String {
-    let mut lines: Vec<String> = chance.of(programs).lines().map(str::to_owned).collect();
+fn mutated(programs: &[String], dice: &mut Dice) -> String {
+    let mut lines: Vec<String> = dice.of(programs).lines().map(str::to_owned).collect();
     let known: Vec<&str> = LINES.split('|').collect();
-    for _ in 0..=chance.below(6) {
+    for _ in 0..=dice.below(6) {
         if lines.is_empty() {
             lines.push("G0 X1".into());
         }
-        let at = chance.below(lines.len());
-        match chance.below(8) {
-            0..=2 => lines[at] = with_number(&lines[at], chance),
-            3 | 4 => lines.insert(at, chance.of(&known).to_string()),
+        let at = dice.below(lines.len());
+        match dice.below(8) {
+            0..=2 => lines[at] = with_number(&lines[at], dice),
+            3 | 4 => lines.insert(at, dice.of(&known).to_string()),
             5 => {
-                let line = with_number(known[chance.below(known.len())], chance);
+                let line = with_number(known[dice.below(known.len())], dice);
                 lines.insert(at, line);
             }
             6 => {
-                let other: Vec<&str> = chance.of(programs).lines().collect();
-                let from = chance.below(other.len());
-                let taken = other.iter().skip(from).take(1 + chance.below(20));
+                let other: Vec<&str> = dice.of(programs).lines().collect();
+                let from = dice.below(other.len());
+                let taken = other.iter().skip(from).take(1 + dice.below(20));
                 lines.splice(at..at, taken.map(|line| (*line).to_owned()));
             }
             _ => {
@@ -229,17 +209,17 @@ fn mutated(programs: &[String], chance: &mut Chance) -> String {
 }
 
 /// A machine file under a controller, which may add limits over time.
-fn machine(machines: &[String], chance: &mut Chance) -> String {
-    let (text, controller) = (chance.of(machines), chance.of(CONTROLLERS));
+fn machine(machines: &[String], dice: &mut Dice) -> String {
+    let (text, controller) = (dice.of(machines), dice.of(CONTROLLERS));
     let mut machine = String::new();
     for line in text.lines() {
-        let line = if line.starts_with("controller =") && chance.below(4) > 0 {
+        let line = if line.starts_with("controller =") && dice.below(4) > 0 {
             format!("controller = \"{controller}\"")
         } else {
             line.to_owned()
         };
         let _ = writeln!(machine, "{line}");
-        if line == "[converter]" && chance.below(2) == 0 && !text.contains("continuous_power_w") {
+        if line == "[converter]" && dice.below(2) == 0 && !text.contains("continuous_power_w") {
             machine.push_str("continuous_power_w = 50\nwindow_s = 180\n");
         }
     }
@@ -326,16 +306,13 @@ fn small_programs_come_to_an_end_soon() {
     let (mut runs, mut slowest) = (0, (0.0, 0));
     while began.elapsed().as_secs_f64() < seconds("GWATT_FUZZ_S", 60.0) {
         seed += 1;
-        let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        let mut dice = Dice(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         for _ in 0..4 {
-            chance.next();
+            dice.below(1);
         }
-        let program = mutated(&programs, &mut chance);
-        let given = [
-            machine(&machines, &mut chance),
-            machine(&machines, &mut chance),
-        ];
-        let wanted = chance.of(RUNS);
+        let program = mutated(&programs, &mut dice);
+        let given = [machine(&machines, &mut dice), machine(&machines, &mut dice)];
+        let wanted = dice.of(RUNS);
         let names = [
             format!("{seed}.ngc"),
             format!("{seed}-m.toml"),
@@ -394,9 +371,7 @@ fn an_arc_of_years_is_held_against_its_worst_window() {
             axis('X'),
             axis('Y')
         );
-        let machine = gwatt::machine::Machine::from_toml("m.toml", &text)
-            .unwrap()
-            .0;
+        let machine = machine_from(&text);
         let program = "G21 G90 G94 G17\nG0 X0 Y0\nG3 X0 Y0 I2147483648 J0 F3000\nM30\n";
         let options = gwatt::pipeline::Options::default();
         let input = std::io::Cursor::new(program);
@@ -430,9 +405,7 @@ fn an_arc_of_too_many_chords_gets_the_robust_bound() {
         axis('X'),
         axis('Y')
     );
-    let machine = gwatt::machine::Machine::from_toml("m.toml", &text)
-        .unwrap()
-        .0;
+    let machine = machine_from(&text);
     for (radius, certificate) in [
         ("2147483648", gwatt::pipeline::Certificate::Robust),
         ("100000", gwatt::pipeline::Certificate::Planned),

@@ -3,7 +3,10 @@
 
 use std::fs::File;
 use std::io::Write as _;
+use std::path::PathBuf;
 use std::thread;
+
+use crate::layers::root;
 
 /// The check that calls this has what it needs.
 pub(crate) fn runs() {
@@ -14,6 +17,19 @@ pub(crate) fn runs() {
 pub(crate) fn cannot_run(why: &str) {
     println!("cannot run: {why}");
     note("missing", why);
+}
+
+/// Data of others next to the repository, if `what` stands there.
+pub(crate) fn shared(path: &str, what: &str) -> Option<PathBuf> {
+    let found = [root().join("../shared"), root().join("../../shared")]
+        .map(|folder| folder.join(path))
+        .into_iter()
+        .find(|path| path.exists());
+    match found {
+        Some(_) => runs(),
+        None => cannot_run(&format!("{what} are not there")),
+    }
+    found
 }
 
 /// A line in the file that `GWATT_EVIDENCE` names: the check and why.

@@ -5,24 +5,11 @@
 
 mod random;
 
-use std::fmt::Write as _;
 use std::io::Cursor;
 
-use gwatt::machine::Machine;
 use gwatt::pipeline::{Failure, Options, moves};
 
-fn machine(controller: &str) -> Machine {
-    let mut text = format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e9\n"
-    );
-    for axis in ["X", "Y", "Z"] {
-        let _ = write!(
-            text,
-            "[axes.{axis}]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10\n"
-        );
-    }
-    Machine::from_toml("test.toml", &text).expect("a machine").0
-}
+use crate::listing::machine_of;
 
 /// Where X is at the end of a program; or line, rule and message of the first
 /// error.
@@ -30,7 +17,7 @@ fn end(controller: &str, program: &str) -> Result<f64, String> {
     let mut x = 0.0;
     let run = moves(
         Cursor::new(program.to_owned()),
-        &machine(controller),
+        &machine_of(controller, "", "XYZ", ""),
         &Options::default(),
         &mut |mv, _| {
             x = mv.end[0];

@@ -10,7 +10,8 @@ use gwatt::machine::Machine;
 use gwatt::pipeline::{self, Failure, Options};
 use insta::assert_snapshot;
 
-use crate::listing::{machine_of, without_lines};
+use crate::listing::{errors_of, in_full, machine_of, without_lines};
+use crate::runs::moves_of;
 
 /// A machine with linear axes X Y Z and rotary axes B C; `more` goes into its
 /// file.
@@ -24,42 +25,15 @@ pub(crate) fn moves(controller: &str, program: &str) -> String {
 }
 
 fn moves_on(machine: &Machine, program: &str) -> String {
-    let mut out = String::new();
-    let result = pipeline::moves(
-        Cursor::new(program),
-        machine,
-        &Options::default(),
-        &mut |mv, _| {
-            let _ = write!(out, "{} {}", mv.line, mv.kind.name());
-            for axis in mv.moving.iter() {
-                let letter = gwatt::machine::ALL_AXES[axis].letter() as char;
-                let _ = write!(out, " {letter}{:.4}", mv.end[axis] + 0.0);
-            }
-            if let Some(arc) = &mv.arc {
-                let [first, second] = arc.center;
-                let turns = arc.sweep_rad / std::f64::consts::TAU;
-                let _ = write!(out, " center {first:.4},{second:.4} turns {turns:.4}");
-            }
-            if mv.feed_mm_s.is_finite() {
-                let _ = write!(out, " F{:.4}", mv.feed_mm_s * 60.0);
-            }
-            if mv.dwell_s > 0.0 {
-                let _ = write!(out, " {} s", mv.dwell_s);
-            }
-            out.push('\n');
-            Ok(())
-        },
-    );
-    out = out.replace("-0.0000", "0.0000");
-    if let Err(Failure::Refused { diagnostics, .. }) = result {
-        out.clear();
-        for found in diagnostics {
-            if found.severity == gwatt::diagnostic::Severity::Error {
-                let _ = writeln!(out, "{} {}: {}", found.line, found.rule, found.message);
-            }
-        }
+    let (moves, failure) = moves_of(machine, &Options::default(), program);
+    if let Some(failure @ Failure::Refused { .. }) = failure {
+        return errors_of(&failure);
     }
-    out
+    moves
+        .iter()
+        .map(in_full)
+        .collect::<String>()
+        .replace("-0.0000", "0.0000")
 }
 
 /// Rules of the notes on a program.

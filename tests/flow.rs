@@ -6,7 +6,6 @@
 
 mod random;
 
-use std::fmt::Write as _;
 use std::io::Cursor;
 
 use gwatt::diagnostic::Severity;
@@ -14,17 +13,14 @@ use gwatt::interpret::ParameterFile;
 use gwatt::machine::Machine;
 use gwatt::pipeline::{Failure, Limits, Options, moves};
 
+use crate::machines::{linear_axes, machine_from};
+
 fn machine(controller: &str, peak_w: f64) -> Machine {
-    let mut text = format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = {peak_w:?}\n[path]\nmode = \"exact-stop\"\n[limits]\nmargin = 0\n"
-    );
-    for axis in ["X", "Y"] {
-        let _ = write!(
-            text,
-            "[axes.{axis}]\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 500\n"
-        );
-    }
-    Machine::from_toml("test.toml", &text).expect("a machine").0
+    machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\n\
+         peak_power_w = {peak_w:?}\n[path]\nmode = \"exact-stop\"\n[limits]\nmargin = 0\n{}",
+        linear_axes("XY", [30000.0, 5000.0, 500.0], "")
+    ))
 }
 
 fn options(depth: usize, repeated_moves: u64, idle_lines: u64) -> Options {

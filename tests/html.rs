@@ -8,10 +8,12 @@ mod shown;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 use tempfile::TempDir;
+
+use crate::shop::gwatt;
 
 /// Scripts of the page: the data, two libraries, its own.
 const SCRIPTS: usize = 4;
@@ -37,9 +39,7 @@ impl Desk {
     }
 
     fn run(&self, arguments: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_gwatt"))
-            .args(arguments)
-            .current_dir(self.0.path())
+        gwatt(self.0.path(), arguments.iter().copied())
             .output()
             .unwrap()
     }

@@ -17,7 +17,6 @@ mod verdicts;
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
 
 use gwatt::identify::excitation::{Shape, make};
 use gwatt::identify::flexible::{self, Choice, Flexible, Method};
@@ -26,28 +25,22 @@ use gwatt::identify::{
     Factor, Given, Judgement, Measured, Recording, TransferFunction, factors_of, simulate,
 };
 
+use crate::evidence::shared;
+use crate::random::Random;
+
 pub(crate) const PERIOD_S: f64 = 1e-3;
 
-/// `SplitMix64`, and normal deviates of it (Box & Muller).
-pub(crate) struct Noise(u64);
-
-impl Noise {
-    pub(crate) fn new(seed: u64) -> Self {
-        Self(seed)
+/// Position, speed and acceleration of a sum of sines: amplitudes and Hz.
+pub(crate) fn sines(t: f64, parts: &[(f64, f64)]) -> [f64; 3] {
+    let mut sums = [0.0; 3];
+    for (amplitude, hz) in parts {
+        let w = TAU * hz;
+        let (sin, cos) = libm::sincos(w * t);
+        sums[0] += amplitude * sin;
+        sums[1] += amplitude * w * cos;
+        sums[2] -= amplitude * w * w * sin;
     }
-
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    pub(crate) fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * libm::log(1.0 - self.uniform())).sqrt();
-        radius * libm::cos(TAU * self.uniform())
-    }
+    sums
 }
 
 fn product(p: &[f64], q: &[f64]) -> Vec<f64> {
@@ -168,7 +161,7 @@ pub(crate) fn noisy_recording(
 ) -> Recording {
     let clean = simulate(axis, Measured::Direct, PERIOD_S, torque).unwrap();
     let rms = (clean.iter().map(|a| a * a).sum::<f64>() / clean.len() as f64).sqrt();
-    let mut random = Noise(seed.wrapping_mul(7919).wrapping_add(1));
+    let mut random = Random(seed.wrapping_mul(7919).wrapping_add(1));
     let noisy: Vec<f64> = clean
         .iter()
         .map(|a| a + noise * rms * random.normal())
@@ -337,7 +330,7 @@ fn delay_and_rigid_axis_are_found() {
 fn a_torque_with_a_speed_tells_the_axis() {
     let axis = one_side();
     let torque = random(8000, 45.0);
-    let mut random = Noise::new(11);
+    let mut random = Random(11);
     let mut sum = 0.0;
     let speed: Vec<f64> = simulate(&axis, Measured::Velocity, PERIOD_S, &torque)
         .unwrap()
@@ -395,7 +388,7 @@ fn without_noise_every_method_is_exact_or_near() {
 fn in_a_closed_loop_the_excitation_is_the_instrument() {
     // A rigid axis with one lag; speed controller on the noisy acceleration's sum.
     let excitation = m_sequence(8000);
-    let mut random = Noise(5);
+    let mut random = Random(5);
     let (mut speed, mut measured_speed) = (0.0, 0.0);
     let (mut torques, mut accels) = (Vec::new(), Vec::new());
     for r in &excitation {
@@ -420,25 +413,11 @@ fn in_a_closed_loop_the_excitation_is_the_instrument() {
 
 /// The published axis: force in N from the drive's voltage by the published constant.
 pub(crate) fn emps() -> Option<Recording> {
-    let path = shared("measured/emps/DATA_EMPS.csv")?;
+    let path = shared("measured/emps/DATA_EMPS.csv", "the recordings of others")?;
     let mut text = "time_s,force_n,position_m\n".to_owned();
     for line in std::fs::read_to_string(path).unwrap().lines().skip(1) {
         let row: Vec<f64> = line.split(',').map(|x| x.trim().parse().unwrap()).collect();
         writeln!(text, "{},{},{}", row[0], row[3] * 35.150_651_88, row[2]).unwrap();
     }
     Some(Recording::read(text.as_bytes(), None).unwrap())
-}
-
-/// Data of others next to the repository, if they are there.
-pub(crate) fn shared(path: &str) -> Option<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let found = [root.join("../shared"), root.join("../../shared")]
-        .into_iter()
-        .map(|folder| folder.join(path))
-        .find(|path| path.exists());
-    match found {
-        Some(_) => crate::evidence::runs(),
-        None => crate::evidence::cannot_run("the recordings of others are not there"),
-    }
-    found
 }

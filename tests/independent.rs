@@ -1,11 +1,10 @@
 //! Independent rapids of axes that run alone on their converter, worked out by hand.
 
-use std::io::Cursor;
+use gwatt::machine::Machine;
+use gwatt::pipeline::Row;
 
-use gwatt::machine::{Machine, OverrideAt};
-use gwatt::pipeline::{Options, Row, analyze};
-
-use crate::rows::Rows;
+use crate::machines::machine_from;
+use crate::runs::{rows_of, turned};
 
 /// A weight of 300 N that friction does not hold, on a converter of its own or not.
 fn lift(converters: &str, axis: &str) -> Machine {
@@ -15,24 +14,15 @@ fn lift(converters: &str, axis: &str) -> Machine {
          [axes.X]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10\n\
          [axes.Z]\nrapid_mm_min = 30000\nmass_kg = 100\ngravity_n = 300\n{axis}"
     );
-    Machine::from_toml("test.toml", &text).expect("a machine").0
+    machine_from(&text)
 }
 
 fn row(machine: &Machine, program: &str) -> Row {
-    let mut rows = Rows::default();
-    let input = Cursor::new(program.as_bytes());
-    analyze(input, machine, &Options::default(), Some(&mut rows)).expect("a program");
-    rows.0.swap_remove(0)
+    rows_of(machine, program).swap_remove(0)
 }
 
 fn at(machine: &Machine, rapid: f64) -> Machine {
-    let mut machine = machine.clone();
-    machine.limits.override_at = Some(OverrideAt {
-        feed: rapid,
-        rapid,
-        spindle: 1.0,
-    });
-    machine
+    turned(machine, [rapid, rapid, 1.0])
 }
 
 const ONE: &str = "[converter]\npeak_power_w = 1000\nregen_power_w = 1000\n";

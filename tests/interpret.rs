@@ -7,7 +7,8 @@ use gwatt::machine::Machine;
 use gwatt::pipeline::{self, Failure, Options, Reading};
 use insta::assert_snapshot;
 
-use crate::listing::machine_of;
+use crate::listing::{in_full, machine_of};
+use crate::runs::moves_of;
 
 /// A machine with linear axes X Y Z U and rotary axes A C.
 pub(crate) fn machine(controller: &str) -> Machine {
@@ -22,37 +23,9 @@ fn moves(controller: &str, program: &str) -> String {
 
 /// The same with these options.
 pub(crate) fn moves_with(controller: &str, program: &str, options: &Options) -> String {
-    let machine = machine(controller);
-    let mut out = String::new();
-    let result = pipeline::moves(
-        std::io::Cursor::new(program),
-        &machine,
-        options,
-        &mut |mv, _| {
-            let _ = write!(out, "{} {}", mv.line, mv.kind.name());
-            for axis in mv.moving.iter() {
-                let letter = gwatt::machine::ALL_AXES[axis].letter() as char;
-                let _ = write!(out, " {letter}{:.4}", mv.end[axis]);
-            }
-            if let Some(arc) = &mv.arc {
-                let turns = arc.sweep_rad / std::f64::consts::TAU;
-                let _ = write!(
-                    out,
-                    " center {:.4},{:.4} turns {turns:.4}",
-                    arc.center[0], arc.center[1]
-                );
-            }
-            if mv.feed_mm_s.is_finite() {
-                let _ = write!(out, " F{:.4}", mv.feed_mm_s * 60.0);
-            }
-            if mv.dwell_s > 0.0 {
-                let _ = write!(out, " {} s", mv.dwell_s);
-            }
-            out.push('\n');
-            Ok(())
-        },
-    );
-    if let Err(Failure::Refused { diagnostics, .. }) = result {
+    let (moves, failure) = moves_of(&machine(controller), options, program);
+    let mut out: String = moves.iter().map(in_full).collect();
+    if let Some(Failure::Refused { diagnostics, .. }) = failure {
         for found in diagnostics {
             let help = found.help.as_deref().unwrap_or("");
             let _ = writeln!(

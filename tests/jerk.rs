@@ -4,6 +4,8 @@
 use gwatt::plan::jerk::{JerkError, JerkLimits, JerkProfile, State, position_target, speed_target};
 use gwatt::plan::{Phase, PhaseKind};
 
+use crate::random::Random;
+
 /// Limits 10 mm/s, 4 mm/s², 2 mm/s³.
 fn limits() -> JerkLimits {
     JerkLimits::symmetric(10.0, 4.0, 2.0)
@@ -163,26 +165,10 @@ fn positions_that_cannot_be_are_refused() {
     assert!(position_target(rest, state(1.0, 0.0, 0.0), &forwards).is_ok());
 }
 
-/// Random numbers (`splitmix64`).
-struct Random(u64);
-
 impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^= z >> 31;
-        (z >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
     /// A limit from 0.1 to 10.
     fn limit(&mut self) -> f64 {
-        libm::pow(10.0, self.between(-1.0, 1.0))
+        libm::pow(10.0, self.within(-1.0, 1.0))
     }
 
     fn limits(&mut self) -> JerkLimits {
@@ -197,11 +183,11 @@ impl Random {
     /// A state within the limits; now and then at rest, steady or at a limit.
     fn state(&mut self, limits: &JerkLimits) -> State {
         let mut state = state(
-            self.between(-10.0, 10.0),
-            self.between(limits.min_speed_mm_s, limits.max_speed_mm_s),
-            self.between(limits.min_accel_mm_s2, limits.max_accel_mm_s2),
+            self.within(-10.0, 10.0),
+            self.within(limits.min_speed_mm_s, limits.max_speed_mm_s),
+            self.within(limits.min_accel_mm_s2, limits.max_accel_mm_s2),
         );
-        match self.between(0.0, 10.0) as u32 {
+        match self.within(0.0, 10.0) as u32 {
             0 => state.velocity_mm_s = 0.0,
             1 | 2 => state.accel_mm_s2 = 0.0,
             3 => (state.velocity_mm_s, state.accel_mm_s2) = (limits.max_speed_mm_s, 0.0),

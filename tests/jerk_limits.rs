@@ -3,6 +3,8 @@
 
 use std::fmt::Write as _;
 
+use crate::near::assert_near;
+use crate::over_time::rows;
 use crate::shop::Shop;
 
 /// A control that takes corners at a step of speed of 5 mm/s, arcs as arcs.
@@ -29,8 +31,9 @@ fn duration_s(shop: &Shop, program: &str) -> f64 {
     reported(shop, program)["duration_s"].as_f64().unwrap()
 }
 
-fn close(a: f64, b: f64) {
-    assert!((a - b).abs() <= 1e-6 * b.abs(), "{a} is not {b}");
+#[track_caller]
+fn close(found: f64, expected: f64) {
+    assert_near(found, expected, 1e-6 * expected.abs());
 }
 
 const JERK: &str = "jerk_mm_s3 = 30000";
@@ -95,13 +98,6 @@ fn rapids_are_limited_under_limits_of_jerk() {
     }
 }
 
-fn rows(text: &str) -> Vec<Vec<f64>> {
-    text.lines()
-        .filter_map(|line| line.strip_prefix("before,"))
-        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
-        .collect()
-}
-
 /// A line in many blocks runs as one, with one S-curve over all of them.
 #[test]
 fn joints_that_limit_nothing_leave_no_trace() {
@@ -125,7 +121,7 @@ fn joints_that_limit_nothing_leave_no_trace() {
     // The series: acceleration never jumps.
     let (code, _, shown) = shop.run("report a.ngc --series a.csv --step-ms 0.5");
     assert_eq!(code, 0, "{shown}");
-    let rows = rows(&shop.get("a.csv"));
+    let rows = rows(&shop.get("a.csv"), "before");
     close(rows.last().unwrap()[0], one);
     for pair in rows.windows(2) {
         let jerk = (pair[1][3] - pair[0][3]).abs();
@@ -223,7 +219,7 @@ fn a_series_adds_up_to_the_report() {
         let (code, _, shown) = shop.run("report a.ngc --series a.csv --step-ms 0.5");
         assert_eq!(code, 0, "{shown}");
         let report: serde_json::Value = serde_json::from_str(&shop.get("a.json")).unwrap();
-        let rows = rows(&shop.get("a.csv"));
+        let rows = rows(&shop.get("a.csv"), "before");
         let bus = rows[0].len() - 2;
         let close = |found: f64, key: &str, share: f64| {
             let shown = report[key].as_f64().unwrap();

@@ -53,6 +53,8 @@ use gwatt::pipeline::{
     Allowed, Failure, Law, LimitOptions, LimitSummary, Options, Strategy, limit,
 };
 
+use crate::machines::{linear_axes, machine_from};
+
 /// X and Y of 500 kg, 0.5 m/s and 5 m/s²: without friction an axis takes
 /// 0.5 m/s · 500 kg · 5 m/s² = 1250 W at the end of its ramp.
 #[derive(Clone, Copy)]
@@ -98,22 +100,15 @@ pub(crate) const EXACT_STOP: &str = "[path]\nmode = \"exact-stop\"";
 
 impl Rig {
     pub(crate) fn machine(&self) -> Machine {
-        let axis = |letter: &str| {
-            format!(
-                "[axes.{letter}]\nkind = \"linear\"\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 500\n{}\n",
-                self.axis
-            )
-        };
-        let text = format!(
-            "schema = 1\nname = \"rig\"\ncontroller = \"{}\"\n[converter]\npeak_power_w = {:?}\n{}\n{}{}[limits]\nmargin = 0\n{}\n",
+        machine_from(&format!(
+            "schema = 1\nname = \"rig\"\ncontroller = \"{}\"\n[converter]\npeak_power_w = {:?}\n{}\n{}\
+             [limits]\nmargin = 0\n{}\n",
             self.controller,
             self.peak_w,
             self.converter,
-            axis("X"),
-            axis("Y"),
+            linear_axes("XY", [30000.0, 5000.0, 500.0], self.axis),
             self.rest
-        );
-        Machine::from_toml("rig.toml", &text).expect("a machine").0
+        ))
     }
 
     /// What `limit` makes of a program; only certified text may be delivered.

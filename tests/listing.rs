@@ -4,9 +4,12 @@ use std::fmt::Write as _;
 use std::io::Cursor;
 use std::path::Path;
 
-use gwatt::interpret::Limits;
+use gwatt::diagnostic::Severity;
+use gwatt::interpret::{Limits, Move};
 use gwatt::machine::{ALL_AXES, Machine};
 use gwatt::pipeline::{self, Failure, Options, Reading};
+
+use crate::machines::{linear_axes, machine_from, rotary_axes};
 
 /// A machine with linear axes X Y Z and rotary axes A C under a controller.
 pub(crate) fn machine(controller: &str) -> Machine {
@@ -16,24 +19,12 @@ pub(crate) fn machine(controller: &str) -> Machine {
 /// A machine with these linear and rotary axes: 100 mm/s, 1000 mm/s², 10 kg, and
 /// 60 °/s, 500 °/s², 1 kg·m²; `more` stands before its tables.
 pub(crate) fn machine_of(controller: &str, more: &str, linear: &str, rotary: &str) -> Machine {
-    let mut text = format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n{more}[converter]\npeak_power_w = 1e5\n",
-    );
-    for axis in linear.chars() {
-        let _ = writeln!(
-            text,
-            "[axes.{axis}]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10"
-        );
-    }
-    for axis in rotary.chars() {
-        let _ = writeln!(
-            text,
-            "[axes.{axis}]\nkind = \"rotary\"\nrapid_deg_min = 3600\naccel_deg_s2 = 500\ninertia_kg_m2 = 1"
-        );
-    }
-    Machine::from_toml("test.toml", &text)
-        .expect("a valid machine")
-        .0
+    machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n{more}[converter]\n\
+         peak_power_w = 1e5\n{}{}",
+        linear_axes(linear, [6000.0, 1000.0, 10.0], ""),
+        rotary_axes(rotary, [3600.0, 500.0, 1.0])
+    ))
 }
 
 /// The moves of a program, a line each: line, kind, the axes that differ from
@@ -73,11 +64,41 @@ pub(crate) fn listing(program: &str, machine: &Machine, folder: Option<&Path>) -
         out.push('\n');
         Ok(())
     });
-    if let Err(Failure::Refused { diagnostics, .. }) = result {
-        for found in diagnostics
+    if let Err(failure) = result {
+        out += &errors_of(&failure);
+    }
+    out
+}
+
+/// A move to 1e-4, in a line as those of [`listing`].
+pub(crate) fn in_full(mv: &Move) -> String {
+    let mut out = format!("{} {}", mv.line, mv.kind.name());
+    for axis in mv.moving.iter() {
+        let letter = ALL_AXES[axis].letter() as char;
+        let _ = write!(out, " {letter}{:.4}", mv.end[axis]);
+    }
+    if let Some(arc) = &mv.arc {
+        let [first, second] = arc.center;
+        let turns = arc.sweep_rad / std::f64::consts::TAU;
+        let _ = write!(out, " center {first:.4},{second:.4} turns {turns:.4}");
+    }
+    if mv.feed_mm_s.is_finite() {
+        let _ = write!(out, " F{:.4}", mv.feed_mm_s * 60.0);
+    }
+    if mv.dwell_s > 0.0 {
+        let _ = write!(out, " {} s", mv.dwell_s);
+    }
+    out + "\n"
+}
+
+/// The errors for which a program is refused, a line each.
+pub(crate) fn errors_of(failure: &Failure) -> String {
+    let mut out = String::new();
+    if let Failure::Refused { diagnostics, .. } = failure {
+        let errors = diagnostics
             .iter()
-            .filter(|found| found.severity == gwatt::diagnostic::Severity::Error)
-        {
+            .filter(|it| it.severity == Severity::Error);
+        for found in errors {
             let _ = writeln!(out, "{} {}: {}", found.line, found.rule, found.message);
         }
     }

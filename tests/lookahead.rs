@@ -26,7 +26,8 @@ use gwatt::plan::Overrides;
 use gwatt::plan::lookahead::{Element, Joint, PathPlanner, Planned};
 use gwatt::syntax::{Block, scan_line};
 use std::collections::HashMap;
-use std::fmt::Write as _;
+
+use crate::machines::{linear_axes, machine_from};
 
 /// Blends without a tolerance.
 pub(crate) const FREE: Joint = Joint::Blend {
@@ -36,17 +37,11 @@ pub(crate) const FREE: Joint = Joint::Blend {
 
 /// A machine with X, Y and Z alike.
 pub(crate) fn machine(controller: &str, speed_mm_s: f64, accel_mm_s2: f64) -> Machine {
-    let mut text = format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e9\n"
-    );
-    for axis in ["X", "Y", "Z"] {
-        let _ = write!(
-            text,
-            "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = {:?}\naccel_mm_s2 = {accel_mm_s2:?}\nmass_kg = 100\n",
-            speed_mm_s * 60.0
-        );
-    }
-    Machine::from_toml("test.toml", &text).expect("a machine").0
+    machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\n\
+         peak_power_w = 1e9\n{}",
+        linear_axes("XYZ", [speed_mm_s * 60.0, accel_mm_s2, 100.0], "")
+    ))
 }
 
 /// A straight feed.

@@ -19,6 +19,8 @@ mod warnings;
 use gwatt::diagnostic::{Diagnostic, Severity};
 use gwatt::machine::Machine;
 
+use crate::near::assert_near;
+
 /// A small machine without a mistake; tests change one line of it.
 const BASE: &str = r#"schema = 1
 name = "test"
@@ -90,4 +92,10 @@ fn render_one(d: &Diagnostic) -> String {
     let indent = " ".repeat(d.span.start as usize);
     let caret = "^".repeat((d.span.end - d.span.start).max(1) as usize);
     format!("{said}  | {line}\n  | {indent}{caret}\n")
+}
+
+/// Figures that went through conversions of units.
+#[track_caller]
+fn near(found: f64, expected: f64) {
+    assert_near(found, expected, 1e-6 * expected.abs());
 }

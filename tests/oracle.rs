@@ -13,13 +13,12 @@ mod over_time;
 mod plant;
 mod profile;
 mod programs;
-pub(crate) mod random;
 mod series;
 mod spindle;
 mod worked;
 
+use crate::random::Random;
 use compare::Compared;
-use random::Random;
 
 /// Blocks of a program.
 const BLOCKS: usize = 20;

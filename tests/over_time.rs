@@ -5,9 +5,7 @@ mod lower;
 mod overrides;
 mod worked;
 
-use std::process::Command;
-
-use crate::shop::Shop;
+use crate::shop::{Shop, ended, gwatt};
 
 /// A mill whose converter has `ratings`; `rest` comes after it.
 fn mill(controller: &str, rest: &str, ratings: &str) -> Shop {
@@ -232,7 +230,7 @@ const ROUND: &str = "G21 G90 G94 G17 G64 P0.05\nG0 X20 Y10 Z5\nG1 X60 F6000\nG1 
                      G2 X20 Y40 J-20 F3000\nG4 P0.25\nG1 Z0 F600\nG0 X0 Y0\nM30\n";
 
 /// The rows of a series with a value in the first column, as numbers after it.
-fn rows(text: &str, program: &str) -> Vec<Vec<f64>> {
+pub(crate) fn rows(text: &str, program: &str) -> Vec<Vec<f64>> {
     text.lines()
         .filter_map(|line| line.strip_prefix(program)?.strip_prefix(','))
         .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
@@ -372,14 +370,9 @@ fn machines_are_compared_by_their_limits_over_time_too() {
     let weaker = "peak_power_w = 1000\ncontinuous_power_w = 90";
     shop.put("weak.toml", &text.replace("peak_power_w = 1000", weaker));
     let diff = |from: &str, to: &str| {
-        let output = Command::new(env!("CARGO_BIN_EXE_gwatt"))
-            .args(["diff", "a.ngc", "--from", from, "--to", to])
-            .args(["--csv", "diff.csv"])
-            .current_dir(shop.0.path())
-            .output()
-            .unwrap();
-        let reported = String::from_utf8(output.stdout).unwrap();
-        (output.status.code().unwrap(), reported)
+        let mut command = gwatt(shop.0.path(), ["diff", "a.ngc", "--from", from, "--to", to]);
+        let (code, reported, _) = ended(command.args(["--csv", "diff.csv"]).output().unwrap());
+        (code, reported)
     };
     let (code, reported) = diff("mill.toml", "weak.toml");
     assert_eq!(code, 1, "{reported}");

@@ -11,8 +11,11 @@ use gwatt::power::{Demand, PowerModel, Want};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 
-fn close(a: f64, b: f64) {
-    assert!((a - b).abs() <= 1e-9 * b.abs().max(1e-3), "{a} is not {b}");
+use crate::near::assert_near;
+
+#[track_caller]
+fn close(found: f64, expected: f64) {
+    assert_near(found, expected, 1e-9 * expected.abs().max(1e-3));
 }
 
 fn plan_of(profile: Profile) -> Plan {

@@ -2,33 +2,13 @@
 //! around them that a language knows, keep every move, or are refused.
 
 use std::fmt::Write as _;
-use std::io::Cursor;
 
 use gwatt::machine::Machine;
-use gwatt::pipeline::{self, Options};
+use gwatt::pipeline::Options;
 
 use crate::listing::machine;
-
-/// Random figures, the same on all platforms.
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, count: usize) -> usize {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) as usize) % count
-    }
-
-    fn chance(&mut self, percent: usize) -> bool {
-        self.below(100) < percent
-    }
-
-    fn pick<'a>(&mut self, from: &[&'a str]) -> &'a str {
-        from[self.below(from.len())]
-    }
-}
+use crate::random::Dice;
+use crate::runs::moves_of;
 
 /// How a language writes what stands around moves; `@` is a number of its own.
 struct Language {
@@ -269,11 +249,11 @@ impl Written {
         let place = [0, 1]
             .map(|_| 1 + dice.below(60_000))
             .map(|it| it as f64 / 1000.0);
-        let space = dice.pick(&["", " ", "  ", "\t"]);
-        let motion = dice.pick(&["G0", "G1", "G00", "G01", "g1"]);
-        let zeros = dice.pick(&["", "0", "00"]);
+        let space = *dice.of(&["", " ", "  ", "\t"]);
+        let motion = *dice.of(&["G0", "G1", "G00", "G01", "g1"]);
+        let zeros = *dice.of(&["", "0", "00"]);
         let mut line = String::new();
-        if language.controller != "okuma" && dice.chance(15) {
+        if language.controller != "okuma" && dice.below(100) < 15 {
             let _ = write!(line, "N{}{space}", dice.below(90));
         }
         let [x, y] = place;
@@ -281,13 +261,13 @@ impl Written {
         if motion.ends_with('1') {
             let _ = write!(line, "{space} F{}.", 100 + dice.below(3000));
         }
-        if dice.chance(20) {
-            let word = dice.pick(language.words);
+        if dice.below(100) < 20 {
+            let word = *dice.of(language.words);
             if !(word.starts_with('F') && line.contains('F')) {
                 let _ = write!(line, " {word}");
             }
         }
-        if dice.chance(10) {
+        if dice.below(100) < 10 {
             let [open, close] = language.comment;
             let _ = write!(line, " {open}{}{close}", "long ".repeat(dice.below(60)));
         }
@@ -299,7 +279,7 @@ impl Written {
         for _ in 0..=dice.below(4) {
             match dice.below(10) {
                 0..=2 => {
-                    let line = dice.pick(language.lines);
+                    let line = *dice.of(language.lines);
                     self.line(line);
                 }
                 3 if depth == 0 && !language.around.is_empty() => {
@@ -334,17 +314,9 @@ impl Written {
 
 /// Where the moves end that gwatt reads; `None` where it refuses the program.
 fn read(machine: &Machine, text: &str) -> Option<Vec<[f64; 2]>> {
-    let mut ends = Vec::new();
-    let found = pipeline::moves(
-        Cursor::new(text),
-        machine,
-        &Options::default(),
-        &mut |mv, _| {
-            ends.push([mv.end[0], mv.end[1]]);
-            Ok(())
-        },
-    );
-    found.ok().map(|_| ends)
+    let (moves, failure) = moves_of(machine, &Options::default(), text);
+    let ends = moves.iter().map(|mv| [mv.end[0], mv.end[1]]).collect();
+    failure.is_none().then_some(ends)
 }
 
 /// Programs of a language: how many are read, of how many.

@@ -9,12 +9,15 @@ use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use crate::near::assert_near;
+
 fn planned(machine: &Machine, mv: &Move) -> Plan {
     plan(machine, mv, Overrides::default())
 }
 
-fn close(a: f64, b: f64) {
-    assert!((a - b).abs() <= 1e-12 * b.abs().max(1.0), "{a} is not {b}");
+#[track_caller]
+fn close(found: f64, expected: f64) {
+    assert_near(found, expected, 1e-12 * expected.abs().max(1.0));
 }
 
 #[test]

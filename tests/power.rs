@@ -11,6 +11,8 @@ use gwatt::power::{Assessment, Assessor, Certificate, Demand, PowerModel, Want};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
+use crate::near::assert_near;
+
 fn demand(machine: &Machine, mv: &Move) -> Demand {
     let plan = plan(machine, mv, Overrides::default());
     PowerModel::new(machine).demand(mv, &plan, Want::ALL)
@@ -33,8 +35,9 @@ fn judged(
     found
 }
 
-fn close(a: f64, b: f64) {
-    assert!((a - b).abs() <= 1e-9 * b.abs().max(1.0), "{a} is not {b}");
+#[track_caller]
+fn close(found: f64, expected: f64) {
+    assert_near(found, expected, 1e-9 * expected.abs().max(1.0));
 }
 
 #[test]

@@ -15,6 +15,8 @@ use gwatt::machine::{ALL_AXES, AxisSet, Machine};
 use gwatt::pipeline::{self, Failure, Options};
 use insta::assert_snapshot;
 
+use crate::machines::machine_from;
+
 /// X Y Z E: 100 mm/s, 1000 mm/s², home at 0, homing at 10 mm/s; a nozzle heater of
 /// 40 W, a bed of 200 W and a fan of 5 W.
 fn machine(controller: &str) -> Machine {
@@ -47,9 +49,7 @@ fn machine_with(controller: &str, more: &str) -> Machine {
 }
 
 fn load(text: &str) -> Machine {
-    Machine::from_toml("test.toml", text)
-        .expect("a valid machine")
-        .0
+    machine_from(text)
 }
 
 fn letters(set: AxisSet) -> String {

@@ -11,6 +11,8 @@ use gwatt::pipeline::{self, Failure, Options};
 use gwatt::report::{Checked, sarif};
 use gwatt::rules::{find, index, rules};
 
+use crate::layers::root;
+
 /// Texts of the code in kebab case that are no rules.
 const NO_RULES: [&str; 27] = [
     "anti-resonance",
@@ -58,10 +60,6 @@ const BEFORE: [&str; 13] = [
     "rule:",
     "RULE: &str =",
 ];
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 /// The code of all crates, without tests and blanks before literals.
 static CODE: LazyLock<Vec<(PathBuf, String)>> = LazyLock::new(|| {

@@ -9,25 +9,19 @@ use gwatt::machine::Machine;
 use gwatt::pipeline::{DriveId, DriveSchedule, DrivesSample, DrivesSummary, Failure, run_drives};
 use proptest::prelude::*;
 
+use crate::machines::{linear_axes, machine_from, rotary_axes};
+
 const X: DriveId = DriveId::Axis(0);
 
 /// X and Y of 500 kg, 0.5 m/s and 5 m/s² without friction, and a spindle of 0.02 kg·m².
 fn machine(peak_w: f64, axis: &str) -> Machine {
-    let table = |letter: &str| {
-        format!(
-            "[axes.{letter}]\nkind = \"linear\"\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\n\
-             mass_kg = 500\n{axis}\n"
-        )
-    };
-    let text = format!(
+    machine_from(&format!(
         "schema = 1\nname = \"any\"\ncontroller = \"iso\"\n[converter]\npeak_power_w = {peak_w}\n\
-         [limits]\nmargin = 0\n{}{}[axes.A]\nkind = \"rotary\"\nrapid_deg_min = 36000\n\
-         accel_deg_s2 = 3600\ninertia_kg_m2 = 1\n[spindle]\ninertia_kg_m2 = 0.02\n\
-         max_rpm = 6000\naccel_time_s = 1\n",
-        table("X"),
-        table("Y")
-    );
-    Machine::from_toml("any.toml", &text).expect("a machine").0
+         [limits]\nmargin = 0\n{}{}[spindle]\ninertia_kg_m2 = 0.02\nmax_rpm = 6000\n\
+         accel_time_s = 1\n",
+        linear_axes("XY", [30000.0, 5000.0, 500.0], axis),
+        rotary_axes("A", [36000.0, 3600.0, 1.0])
+    ))
 }
 
 fn run(

@@ -11,7 +11,7 @@ use gwatt::machine::Machine;
 use plants::{Rig, SETTINGS, Says};
 
 use crate::limit::{RIG, run};
-use crate::oracle::random::Random;
+use crate::random::Random;
 
 /// Step of the commands, s; drives take twice that.
 const STEP_S: f64 = 1e-4;

@@ -2,9 +2,28 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::process::Command;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
+
+/// gwatt with these arguments, in a folder, without input.
+pub fn gwatt<'a>(folder: &Path, arguments: impl IntoIterator<Item = &'a str>) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gwatt"));
+    command.args(arguments).current_dir(folder);
+    command.stdin(Stdio::null());
+    command
+}
+
+/// Exit code, standard output and standard error.
+pub fn ended(output: Output) -> (i32, String, String) {
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (
+        output.status.code().unwrap(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
 
 /// See the module.
 pub struct Shop(pub TempDir);
@@ -28,6 +47,12 @@ impl Shop {
         }
         shop.put("mill.toml", &text);
         shop
+    }
+
+    /// A mill with linear rapids and this power.
+    pub fn straight(controller: &str, power_w: f64) -> Self {
+        let converter = format!("peak_power_w = {power_w}");
+        Self::mill(controller, &converter, "[path]\nrapid = \"linear\"", "")
     }
 
     /// A lathe with linear rapids, `mill.toml` all the same, and offsets of four tools in
@@ -69,7 +94,7 @@ impl Shop {
     /// The same of `limit` with these options, where `a.nc` is this program.
     pub fn limit(&self, program: &str, options: &str) -> (i32, String, String) {
         self.put("a.nc", program);
-        self.run(format!("limit a.nc {options}").trim_end())
+        self.run(&format!("limit a.nc {options}"))
     }
 
     /// What `limit` writes for a program, which fits.
@@ -83,18 +108,26 @@ impl Shop {
         text
     }
 
+    /// What `limit` writes into `out.nc`.
+    #[track_caller]
+    pub fn written(&self, program: &str, options: &str) -> String {
+        let (code, _, errors) = self.limit(program, &format!("{options} -o out.nc"));
+        assert_eq!(code, 0, "{errors}");
+        self.get("out.nc")
+    }
+
+    /// Why `limit` writes nothing.
+    #[track_caller]
+    pub fn refused(&self, program: &str, options: &str) -> String {
+        let (code, _, errors) = self.limit(program, &format!("{options} -o out.nc"));
+        assert_eq!(code, 1, "{errors}");
+        assert!(!self.has("out.nc"));
+        errors
+    }
+
     /// Exit code, standard output and standard error, on the mill.
     pub fn run(&self, arguments: &str) -> (i32, String, String) {
-        let output = Command::new(env!("CARGO_BIN_EXE_gwatt"))
-            .args(arguments.split(' '))
-            .args(["-m", "mill.toml"])
-            .current_dir(self.0.path())
-            .output()
-            .unwrap();
-        (
-            output.status.code().unwrap(),
-            String::from_utf8(output.stdout).unwrap(),
-            String::from_utf8(output.stderr).unwrap(),
-        )
+        let mut command = gwatt(self.0.path(), arguments.split_whitespace());
+        ended(command.args(["-m", "mill.toml"]).output().unwrap())
     }
 }

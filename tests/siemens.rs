@@ -14,6 +14,7 @@ use gwatt::pipeline::{self, Options};
 use insta::assert_snapshot;
 
 use crate::listing::{listing, machine, without_lines};
+use crate::random::Dice;
 
 fn moves(program: &str) -> String {
     listing(program, &machine("siemens"), None)
@@ -383,14 +384,11 @@ fn garbage_is_refused() {
         "DEF ", "REAL ", "PROC ", "IF ", "GOTOB ", "FOR ", "CASE ", "MCALL ", "CYCLE83", "TRANS ",
         "G2", "AC(", "EX9", "<<", "é", "REP(", "SET", ",",
     ];
-    let mut state = 7_u64;
+    let mut dice = Dice(7);
     for _ in 0..3000 {
         let mut program = String::from("G1 X1 F100\n");
         for _ in 0..12 {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            program.push_str(bits[(state >> 33) as usize % bits.len()]);
+            program.push_str(bits[dice.below(bits.len())]);
         }
         moves(&program);
     }

@@ -6,17 +6,12 @@ use gwatt::machine::Machine;
 use gwatt::pipeline::size::{
     Curve, Job, Outcome, ProgramSize, Rung, Size, Sizing, Wish, rated, size,
 };
-use gwatt::pipeline::{Allowed, Failure, Law, LimitOptions, Options, Strategy, limit};
+use gwatt::pipeline::{Failure, LimitOptions, Options, Strategy, limit};
 use gwatt::report::{Verdict, size_chart, size_csv, size_json, size_text, size_verdict};
 
 use crate::limit::{EXACT_STOP, RIG, Rig};
-
-const HOW: LimitOptions = LimitOptions {
-    strategy: Strategy::Optimal,
-    law: Law::Exact,
-    allowed: Allowed::NOTHING,
-    ..LimitOptions::USUAL
-};
+use crate::near::assert_near;
+use crate::runs::WITH_FEEDS;
 
 /// 500 kg, 0.5 m/s, 5 m/s² and 100 N of friction: 0.5 · (2500 + 100) = 1300 W at the
 /// end of the ramp, 0.5 · (2500 − 100) = 1200 W fed back.
@@ -32,7 +27,7 @@ const FEED: &str = "G90 G94 G21\nG0 X100\nG1 X50 F6000\nM30\n";
 
 fn wish() -> Wish {
     Wish {
-        how: HOW,
+        how: LimitOptions::USUAL,
         converter: 0,
         steps: 6,
         until: 1e6,
@@ -68,11 +63,8 @@ fn program(sizing: &Sizing, index: usize) -> &ProgramSize {
 }
 
 #[track_caller]
-fn near(value: f64, expected: f64, share: f64) {
-    assert!(
-        (value - expected).abs() <= share * expected,
-        "{value} instead of {expected}"
-    );
+fn near(found: f64, expected: f64, share: f64) {
+    assert_near(found, expected, share * expected.abs());
 }
 
 /// All steps of a curve.
@@ -109,13 +101,7 @@ fn the_ends_are_those_worked_by_hand() {
     assert!(found.capacitance.is_none());
 
     // With the permission it goes on, and less is fed back at each step.
-    let how = LimitOptions {
-        allowed: Allowed {
-            feed: true,
-            ..Allowed::NOTHING
-        },
-        ..HOW
-    };
+    let how = WITH_FEEDS;
     let found = sized(&FRICTION.machine(), &[("a", FEED)], &Wish { how, ..wish() });
     assert!(program(&found.rating, 0).lowest < 100.0);
     let ladder = &found.rating.curve.expect("a curve").ladder;
@@ -276,13 +262,7 @@ fn limit_does_what_sizing_says() {
             ..FRICTION
         },
     ];
-    let how = LimitOptions {
-        allowed: Allowed {
-            feed: true,
-            ..Allowed::NOTHING
-        },
-        ..HOW
-    };
+    let how = WITH_FEEDS;
     let wish = Wish {
         how,
         steps: 4,
@@ -405,7 +385,7 @@ fn what_cannot_be_sized_is_named() {
     // A strategy that the machine has no word for suits no rating.
     let how = LimitOptions {
         strategy: Strategy::Preset,
-        ..HOW
+        ..LimitOptions::USUAL
     };
     let failure = size(&jobs(&programs), &machine, &Wish { how, ..wish() });
     assert!(matches!(failure, Err(Failure::Unsuitable(_))));

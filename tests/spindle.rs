@@ -8,6 +8,8 @@ use gwatt::plan::period::{Motion, Ramp};
 use gwatt::power::{SpindlePower, spindle_run};
 use proptest::prelude::*;
 
+use crate::near::assert_near;
+
 const RAD_S_PER_RPM: f64 = std::f64::consts::TAU / 60.0;
 
 /// 0.1 kg·m², 3000/min in one second, without friction, jerk limit and losses.
@@ -32,10 +34,7 @@ fn plain() -> Spindle {
 
 #[track_caller]
 fn near(found: f64, expected: f64) {
-    assert!(
-        (found - expected).abs() <= 1e-6 * expected.abs().max(1e-6),
-        "{found}, not {expected}"
-    );
+    assert_near(found, expected, 1e-6 * expected.abs().max(1e-6));
 }
 
 /// 314.159 rad/s² and 0.1 kg·m² are 31.4159 N·m, at 314.159 rad/s 9869.6 W;

@@ -2,62 +2,42 @@
 //! planes. Their bound is compared with the path itself, point by point.
 
 use std::f64::consts::TAU;
-use std::fmt::Write as _;
-use std::io::Cursor;
 
 use gwatt::interpret::Move;
 use gwatt::machine::Machine;
-use gwatt::pipeline::{self, Certificate, Options, analyze};
+use gwatt::pipeline::{Certificate, Options};
 
 use crate::limit::{RIG, Rig};
-use crate::rows::Rows;
+use crate::machines::{linear_axes, machine_from};
+use crate::runs::{moves_of, rows_of};
 
 const MASS_KG: [f64; 3] = [300.0, 700.0, 150.0];
 const COULOMB_N: [f64; 3] = [200.0, 500.0, 900.0];
 const ACCEL_MM_S2: f64 = 2000.0;
 
 fn machine(controller: &str) -> Machine {
-    let mut text = format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e6\n"
-    );
-    for (axis, letter) in ["X", "Y", "Z"].iter().enumerate() {
-        let _ = write!(
-            text,
-            "[axes.{letter}]\nrapid_mm_min = 30000\naccel_mm_s2 = {ACCEL_MM_S2:?}\nmass_kg = {:?}\ncoulomb_n = {:?}\n",
-            MASS_KG[axis], COULOMB_N[axis]
-        );
-    }
-    Machine::from_toml("test.toml", &text).expect("a machine").0
+    let axes = ["X", "Y", "Z"].iter().zip(MASS_KG).zip(COULOMB_N);
+    let axes = axes.map(|((letter, mass_kg), coulomb_n)| {
+        let friction = format!("coulomb_n = {coulomb_n:?}");
+        linear_axes(letter, [30000.0, ACCEL_MM_S2, mass_kg], &friction)
+    });
+    machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\n\
+         peak_power_w = 1e6\n{}",
+        axes.collect::<String>()
+    ))
 }
 
 fn moves(controller: &str, program: &str) -> Vec<Move> {
-    let mut moves = Vec::new();
-    let options = Options::default();
-    pipeline::moves(
-        Cursor::new(program),
-        &machine(controller),
-        &options,
-        &mut |mv, _| {
-            moves.push(mv.clone());
-            Ok(())
-        },
-    )
-    .expect("a program");
+    let (moves, failure) = moves_of(&machine(controller), &Options::default(), program);
+    assert!(failure.is_none(), "{failure:?}");
     moves
 }
 
 /// The largest peak of a line, and whether all its moves are bounded.
 fn peak(controller: &str, program: &str, line: u64) -> (f64, bool) {
-    let mut rows = Rows::default();
-    let machine = machine(controller);
-    analyze(
-        Cursor::new(program),
-        &machine,
-        &Options::default(),
-        Some(&mut rows),
-    )
-    .expect("a program");
-    let own = rows.0.iter().filter(|row| row.line == line);
+    let rows = rows_of(&machine(controller), program);
+    let own = rows.iter().filter(|row| row.line == line);
     own.fold((0.0, true), |(peak, robust), row| {
         (
             peak.max(row.peak_w),

@@ -9,6 +9,7 @@ use super::advice::{Adviser, Circumstances};
 use super::conditions::{above_largest, conditions};
 use super::drive::{MoveSink, drive_end, drive_line};
 use super::executor::Executor;
+use super::source::Source;
 use super::summary::AT_LENGTH_MAX;
 use super::totals::Totals;
 use super::watching::watching_at;
@@ -33,6 +34,15 @@ pub fn analyze<R: Read + Seek + Send>(
     options: &Options,
     rows: Option<&mut dyn RowSink>,
 ) -> Result<Summary, Failure> {
+    analyze_ways(&mut input, machine, options, rows)
+}
+
+fn analyze_ways(
+    mut input: &mut dyn Source,
+    machine: &Machine,
+    options: &Options,
+    rows: Option<&mut dyn RowSink>,
+) -> Result<Summary, Failure> {
     if !has_ways(options) {
         return analyze_way(input, machine, options, rows);
     }
@@ -40,7 +50,7 @@ pub fn analyze<R: Read + Seek + Send>(
     let mut summaries = Vec::with_capacity(ways.len());
     for way in &ways {
         input.rewind().map_err(Failure::Input)?;
-        summaries.push(analyze_way(&mut input, machine, way, None)?);
+        summaries.push(analyze_way(input, machine, way, None)?);
     }
     let place = worst(&summaries);
     if let (Some(way), Some(summary)) = (ways.get(place), summaries.get_mut(place))
@@ -55,8 +65,8 @@ pub fn analyze<R: Read + Seek + Send>(
 }
 
 /// The figures of one way through a program.
-fn analyze_way<R: Read + Seek + Send>(
-    mut input: R,
+fn analyze_way(
+    mut input: &mut dyn Source,
     machine: &Machine,
     options: &Options,
     rows: Option<&mut dyn RowSink>,
@@ -243,7 +253,16 @@ pub fn called_files<R: Read + Seek>(
 /// # Errors
 /// See [`Failure`]; an error of `each` becomes [`Failure::Output`].
 pub fn moves<R: Read + Seek + Send>(
-    input: R,
+    mut input: R,
+    machine: &Machine,
+    options: &Options,
+    each: &mut dyn FnMut(&Move, Option<f64>) -> std::io::Result<()>,
+) -> Result<Vec<Diagnostic>, Failure> {
+    moves_of(&mut input, machine, options, each)
+}
+
+fn moves_of(
+    input: &mut dyn Source,
     machine: &Machine,
     options: &Options,
     each: &mut dyn FnMut(&Move, Option<f64>) -> std::io::Result<()>,

@@ -7,6 +7,7 @@ use super::advice::{FEED_OPTION, FITS, SPINDLE_HELP};
 use super::expand::WRITTEN_OUT;
 use super::limiting::{first_reasons, limit};
 use super::pause;
+use super::source::Source;
 use super::summary::AT_LENGTH_MAX;
 use super::{
     Allowed, Failure, Law, LimitOptions, Options, Restart, RestartRows, Row, RowSink, Strategy,
@@ -37,6 +38,15 @@ pub fn take_hints<R: Read + Seek + Send>(
     options: &Options,
     summary: &mut Summary,
 ) -> Result<(), Failure> {
+    hints_of(&mut input, machine, options, summary)
+}
+
+fn hints_of(
+    mut input: &mut dyn Source,
+    machine: &Machine,
+    options: &Options,
+    summary: &mut Summary,
+) -> Result<(), Failure> {
     input.rewind().map_err(Failure::Input)?;
     let over_time = summary.over_time.iter_mut();
     pause::advise(&mut input, machine, options, over_time)?;
@@ -56,7 +66,7 @@ pub fn take_hints<R: Read + Seek + Send>(
         let found = if looks {
             limit(&mut input, machine, options, how, io::sink(), rows)?.reasons
         } else {
-            first_reasons(&mut input, machine, options, how)?
+            first_reasons(input, machine, options, how)?
         };
         Ok(first_by_line(found))
     };

@@ -17,6 +17,7 @@ use super::preset_notes::{NO_PRESET, NOT_SET};
 use super::readable::readable;
 use super::rounds::{Job, Rounds, restart};
 use super::row::Detail;
+use super::source::{Source, Target};
 use super::stops;
 use super::strategy::{check_strategy, trusting};
 use super::unmarked::unmarked;
@@ -37,18 +38,18 @@ use crate::power::Lower;
 /// See [`Failure`]. A program that cannot be made to fit is no error: see
 /// [`LimitSummary::certified`].
 pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
-    input: R,
+    mut input: R,
     machine: &Machine,
     options: &Options,
     how: LimitOptions,
-    output: W,
+    mut output: W,
     mut rows: Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
     let wanted = Wanted {
         how,
         rounds: Rounds::All,
     };
-    limit_as_wanted(input, machine, options, wanted, output, &mut rows)
+    limit_as_wanted(&mut input, machine, options, wanted, &mut output, &mut rows)
 }
 
 /// Why moves of a program cannot be lowered, as far as its first round of limiting shows: of long
@@ -56,8 +57,8 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
 ///
 /// # Errors
 /// See [`Failure`].
-pub(super) fn first_reasons<R: Read + Seek + Send>(
-    input: R,
+pub(super) fn first_reasons(
+    input: &mut dyn Source,
     machine: &Machine,
     options: &Options,
     how: LimitOptions,
@@ -66,7 +67,7 @@ pub(super) fn first_reasons<R: Read + Seek + Send>(
         how,
         rounds: Rounds::First,
     };
-    limit_as_wanted(input, machine, options, wanted, io::sink(), &mut None)
+    limit_as_wanted(input, machine, options, wanted, &mut io::sink(), &mut None)
         .map(|summary| summary.reasons)
 }
 
@@ -78,12 +79,12 @@ struct Wanted {
 }
 
 /// See [`limit`].
-fn limit_as_wanted<R: Read + Seek + Send, W: Write + Restart + Send>(
-    input: R,
+fn limit_as_wanted(
+    input: &mut dyn Source,
     machine: &Machine,
     options: &Options,
     wanted: Wanted,
-    output: W,
+    output: &mut dyn Target,
     rows: &mut Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
     if let Some((machine, note)) = trusting(machine, wanted.how).or_else(|| readable(machine)) {

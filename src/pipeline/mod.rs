@@ -42,6 +42,7 @@ mod rounds;
 mod row;
 mod schedule;
 mod series;
+mod source;
 mod set;
 pub mod size;
 mod spindle;

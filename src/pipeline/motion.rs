@@ -8,6 +8,7 @@ use std::collections::VecDeque;
 use std::io::{Read, Seek};
 
 use super::executor::Executor;
+use super::source::Source;
 use super::{Failure, Options};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::{Action, Arc, Move, MoveKind, Step};
@@ -79,7 +80,16 @@ struct Mover<'m, 'e> {
 /// # Errors
 /// See [`Failure`]; an unknown start is one, and so is what `each` gives.
 pub fn motion<R: Read + Seek + Send>(
-    input: R,
+    mut input: R,
+    machine: &Machine,
+    options: &Options,
+    each: &mut dyn FnMut(Stretch) -> Result<(), Failure>,
+) -> Result<MotionNotes, Failure> {
+    motion_of(&mut input, machine, options, each)
+}
+
+fn motion_of(
+    input: &mut dyn Source,
     machine: &Machine,
     options: &Options,
     each: &mut dyn FnMut(Stretch) -> Result<(), Failure>,

@@ -7,6 +7,7 @@ use std::io::{self, Read, Seek};
 use super::limiting::limit;
 use super::outcome::Price;
 use super::pause;
+use super::source::Source;
 use super::summary::AT_LENGTH_MAX;
 use super::{
     Allowed, Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, Row, RowSink,
@@ -24,6 +25,16 @@ use crate::machine::Machine;
 /// See [`Failure`].
 pub fn price<R: Read + Seek + Send>(
     mut input: R,
+    machine: &Machine,
+    options: &Options,
+    how: LimitOptions,
+    refused: &mut LimitSummary,
+) -> Result<(), Failure> {
+    price_of(&mut input, machine, options, how, refused)
+}
+
+fn price_of(
+    mut input: &mut dyn Source,
     machine: &Machine,
     options: &Options,
     how: LimitOptions,

@@ -7,6 +7,7 @@ use std::collections::VecDeque;
 use std::io::{self, Read, Seek};
 
 use super::executor::Executor;
+use super::source::Source;
 use super::{Failure, Options};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::Step;
@@ -52,7 +53,17 @@ pub trait SeriesSink {
 /// # Errors
 /// See [`Failure`]; an error of `sink` becomes [`Failure::Output`].
 pub fn series<R: Read + Seek + Send>(
-    input: R,
+    mut input: R,
+    machine: &Machine,
+    options: &Options,
+    step_s: f64,
+    sink: &mut dyn SeriesSink,
+) -> Result<Option<Diagnostic>, Failure> {
+    series_of(&mut input, machine, options, step_s, sink)
+}
+
+fn series_of(
+    input: &mut dyn Source,
     machine: &Machine,
     options: &Options,
     step_s: f64,

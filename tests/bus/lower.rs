@@ -2,31 +2,12 @@
 
 use std::fmt::Write as _;
 
-use gwatt::machine::{Machine, OverrideAt};
+use gwatt::machine::Machine;
 use gwatt::pipeline::Options;
 use proptest::prelude::*;
 
-use super::{FULL_W, machine, run};
-
-/// The same machine where the knobs stand there.
-fn at(machine: &Machine, [feed, rapid, spindle]: [f64; 3]) -> Machine {
-    let mut machine = machine.clone();
-    machine.limits.override_at = Some(OverrideAt {
-        feed,
-        rapid,
-        spindle,
-    });
-    machine
-}
-
-fn with_limit(machine: &Machine, limit_w: f64) -> Machine {
-    let mut text = machine.clone();
-    for converter in &mut text.converters {
-        converter.peak_power_w = limit_w;
-        converter.regen_power_w = Some(limit_w);
-    }
-    text
-}
+use super::{FULL_W, machine, run, with_limits};
+use crate::runs::turned;
 
 /// X goes 50 mm and back, each in 0.447 s; its peak is 223.6 W. The run takes a second.
 const THERE_AND_BACK: &str = "S3000\nM3\nG1 X50 F18000\nG0 X0\nG4 P2\n";
@@ -45,14 +26,14 @@ fn a_rapid_that_comes_later_meets_the_end_of_the_run() {
     // With the feed at 23.6 % its peak comes next to the end of the run.
     let most_w = FULL_W + 1000.0 * 0.05_f64.sqrt();
     let (rows, _) = run(
-        &at(&machine, [0.2363, 1.0, 1.0]),
+        &turned(&machine, [0.2363, 1.0, 1.0]),
         THERE_AND_BACK,
         &Options::default(),
     );
     assert!(rows[1].peak_w > most_w - 10.0, "{}", rows[1].peak_w);
     let fits = |limit_w: f64| {
         run(
-            &with_limit(&machine, limit_w),
+            &with_limits(&machine, [limit_w; 2]),
             THERE_AND_BACK,
             &Options::default(),
         )
@@ -77,7 +58,7 @@ fn the_first_rapid_after_a_command_speeds_up_when_it_always_does() {
     let machine = machine("iso", "", "wait = false", "");
     let program = "S3000\nM3\nG0 X10\nG4 P2\n";
     let (_, summary) = run(
-        &with_limit(&machine, FULL_W + 1.0),
+        &with_limits(&machine, [FULL_W + 1.0; 2]),
         program,
         &Options::default(),
     );
@@ -97,13 +78,13 @@ fn a_spindle_that_turns_round_does_so_sooner_when_turned_down() {
     };
     let (row, _) = rapid(&machine);
     assert!((row.peak_w - rapid_w).abs() < 1e-6, "{row:?}");
-    let (row, _) = rapid(&at(&machine, [1.0, 1.0, 0.3]));
+    let (row, _) = rapid(&turned(&machine, [1.0, 1.0, 0.3]));
     assert!(row.peak_w > turned_w + 0.8 * rapid_w, "{row:?}");
     // At any override it may be anywhere on its run.
-    let (row, summary) = rapid(&with_limit(&machine, FULL_W + 1.0));
+    let (row, summary) = rapid(&with_limits(&machine, [FULL_W + 1.0; 2]));
     assert!(summary.unfit_count > 0);
     assert!((row.peak_w - FULL_W - rapid_w).abs() < 1.0, "{row:?}");
-    let (_, summary) = rapid(&with_limit(&machine, FULL_W + rapid_w + 1.0));
+    let (_, summary) = rapid(&with_limits(&machine, [FULL_W + rapid_w + 1.0; 2]));
     assert_eq!(summary.unfit_count, 0);
 }
 
@@ -159,7 +140,7 @@ proptest! {
                 [peaks[0].max(row.peak_w), peaks[1].max(row.regen_w)]
             })
         };
-        let found: Vec<[f64; 2]> = settings.map(|knobs| peaks(&at(&machine, knobs))).collect();
+        let found: Vec<[f64; 2]> = settings.map(|knobs| peaks(&turned(&machine, knobs))).collect();
         let own = peaks(&machine);
         // Between what the largest overrides ask for and what others do.
         for side in [0, 1] {
@@ -168,7 +149,7 @@ proptest! {
             if limit_w * (1.0 + 1e-6) >= most || limit_w <= 0.0 {
                 continue;
             }
-            let mut limited = with_limit(&machine, 1e6);
+            let mut limited = with_limits(&machine, [1e6; 2]);
             for converter in &mut limited.converters {
                 if side == 0 {
                     converter.peak_power_w = limit_w;

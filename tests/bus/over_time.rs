@@ -4,18 +4,12 @@
 use super::{FULL_W, machine, run};
 use gwatt::pipeline::Options;
 
+use crate::runs::once;
+
 /// Limits of the converter: 4 s windows, half of the power of a run.
 const LIMITS: &str = "continuous_power_w = 4934.802200544679\nwindow_s = 4\n\
                       overload = [{ power_w = 1e5, seconds = 10, every_s = 20 }]\n\
                       brake_power_w = 4934.802200544679\nbrake_energy_j = 1e5";
-
-/// One run of the program.
-fn once() -> Options {
-    Options {
-        once: true,
-        ..Options::default()
-    }
-}
 
 /// The ratings by their names: what counts in steps is up to 0.5 % too high, and
 /// never too low.

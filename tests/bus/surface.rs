@@ -4,30 +4,12 @@
 use std::fmt::Write as _;
 
 use gwatt::interpret::MoveKind;
-use gwatt::machine::{Machine, OverrideAt};
+use gwatt::machine::Machine;
 use gwatt::pipeline::Options;
 use proptest::prelude::*;
 
-use super::{machine, near, run};
-
-fn at(machine: &Machine, [feed, rapid, spindle]: [f64; 3]) -> Machine {
-    let mut machine = machine.clone();
-    machine.limits.override_at = Some(OverrideAt {
-        feed,
-        rapid,
-        spindle,
-    });
-    machine
-}
-
-fn with_limit(machine: &Machine, limits_w: [f64; 2]) -> Machine {
-    let mut limited = machine.clone();
-    for converter in &mut limited.converters {
-        converter.peak_power_w = limits_w[0];
-        converter.regen_power_w = Some(limits_w[1]);
-    }
-    limited
-}
+use super::{machine, near, run, with_limits};
+use crate::runs::turned;
 
 /// 100 m/min, at most 500/min: 52.36 rad/s from 31.8 mm on, where following takes
 /// J·V²·vr/r³ = 258 W at the largest override. Turned down it still speeds up at 20 mm, to no
@@ -42,7 +24,7 @@ fn a_clamp_that_is_not_turned_down_is_reached_later() {
     let omega = 500.0 * std::f64::consts::TAU / 60.0;
     let most_w = 0.1 * omega * omega * 0.03 / 0.02 + 30.0;
     let found =
-        |limits_w: [f64; 2]| run(&with_limit(&lathe, limits_w), program, &Options::default());
+        |limits_w: [f64; 2]| run(&with_limits(&lathe, limits_w), program, &Options::default());
     let (rows, summary) = found([most_w - 1.0, 1e5]);
     assert_eq!(summary.unfit_count, 1);
     near(rows[2].peak_w, most_w);
@@ -68,7 +50,7 @@ fn a_clamp_that_holds_all_along_is_left_where_the_speed_is_turned_down() {
     let omega = 500.0 * std::f64::consts::TAU / 60.0;
     let most_w = 0.1 * omega * omega * 0.03 / 0.02 + 30.0;
     let feeds = |limits_w: [f64; 2]| {
-        let (rows, _) = run(&with_limit(&lathe, limits_w), program, &Options::default());
+        let (rows, _) = run(&with_limits(&lathe, limits_w), program, &Options::default());
         let feeds = rows.iter().filter(|row| row.kind == MoveKind::Feed);
         feeds
             .map(|row| [row.peak_w, row.regen_w])
@@ -94,12 +76,12 @@ fn a_spindle_that_cannot_follow_at_a_lower_override_lags_into_the_next_move() {
         format!("G18 G61.1 G8\nG0 X31\nG96 D500 S{surface} M3\nG4 P9\nG1 X16 F6000\nG0 Z10\n")
     };
     // The run takes 5.24 N·m up to 52.4 rad/s, 274 W, and Z 100 W.
-    let limited = with_limit(&lathe, [300.0, 1e5]);
+    let limited = with_limits(&lathe, [300.0, 1e5]);
     let z_w = |machine: &Machine, surface: u32| {
         let (rows, _) = run(machine, &program(surface), &Options::default());
         rows.last().expect("a move of Z").peak_w
     };
-    let largest = at(&limited, [1.0; 3]);
+    let largest = turned(&limited, [1.0; 3]);
     assert!(z_w(&largest, 50) > 300.0);
     near(z_w(&largest, 100), 100.0);
     assert!(z_w(&limited, 100) > 300.0);
@@ -114,7 +96,7 @@ fn what_the_spindle_takes_is_not_credited_where_it_is_turned_down() {
         "G18 G61.1 G8\nG0 X20\nG96 D3000 S100 M3\nG4 P5\nG1 Z2000 F60000\nG1 X20.001 Z0\n";
     let found = |limit_w: f64| {
         run(
-            &with_limit(&lathe, [1e5, limit_w]),
+            &with_limits(&lathe, [1e5, limit_w]),
             program,
             &Options::default(),
         )
@@ -182,10 +164,10 @@ proptest! {
         let mut found = Vec::new();
         for &(feed, rapid, share) in &knobs {
             for [feed, rapid] in [[feed, feed], [feed, 1.0], [1.0, rapid], [1.0, 1.0]] {
-                let turned = at(&lathe, [feed, rapid, share * largest]);
-                found.push(peaks(&turned, &program(1.0)));
+                let lower = turned(&lathe, [feed, rapid, share * largest]);
+                found.push(peaks(&lower, &program(1.0)));
                 // The same speeds, but for the clamp.
-                let scaled = at(&lathe, [feed, rapid, 1.0]);
+                let scaled = turned(&lathe, [feed, rapid, 1.0]);
                 found.push(peaks(&scaled, &program(share * largest)));
             }
         }
@@ -199,7 +181,7 @@ proptest! {
             }
             let mut limits_w = [1e6; 2];
             limits_w[side] = limit_w;
-            let (_, summary) = run(&with_limit(&lathe, limits_w), &text, &Options::default());
+            let (_, summary) = run(&with_limits(&lathe, limits_w), &text, &Options::default());
             prop_assert!(
                 summary.unfit_count > 0,
                 "side {side}: fits {limit_w}, but another override asks for {most}\n{text}"

@@ -1,14 +1,11 @@
 //! What CI runs: the hooks of pre-commit and the action, line by line.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
 
 use super::{GENTLE, Shop};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).to_owned()
-}
+use crate::layers::root;
 
 fn read(name: &str) -> String {
     fs::read_to_string(root().join(name)).unwrap()

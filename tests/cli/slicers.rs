@@ -1,19 +1,15 @@
 //! gwatt as slicers call it, with the lines of docs/slicers.md.
 
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 
 use super::{Ran, Shop};
+use crate::layers::root;
 
 /// At 500 mm/s the bed takes 225 W and the electronics 30: more than the printer's supply has.
 const PRINT: &str = "; sliced\nG21\nG90\nM82\nG0 F30000 X10 Y180 Z0.2\nG1 F1800 X100\n";
 /// Nothing but a lower F could help.
 const HARD: &str = "G21\nG90\nG1 F30000 X10 Y180\n";
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 /// The lines of docs/slicers.md, for this gwatt and the built-in printer.
 fn lines() -> Vec<String> {

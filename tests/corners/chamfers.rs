@@ -2,7 +2,8 @@
 
 use insta::assert_snapshot;
 
-use super::{machine, moves, moves_on};
+use super::{moves, moves_on};
+use crate::listing::machine_of;
 
 /// B-63944EN, "Optional Chamfering and Corner R".
 #[test]
@@ -24,7 +25,12 @@ fn chamfers_and_rounded_corners() {
         6 feed X-20.0000 F300.00\n";
     assert_eq!(moves("fanuc", program), expected);
     // Without points the numbers are least increments on some machines.
-    let least = machine("fanuc", "[language]\ndecimal_point = \"least-increment\"\n");
+    let least = machine_of(
+        "fanuc",
+        "[language]\ndecimal_point = \"least-increment\"\n",
+        "XYZ",
+        "",
+    );
     let whole = program.replace(",R5.", ",R5000").replace(",C3.", ",C3000");
     assert_eq!(moves_on(&least, "", &whole), expected);
     // On lathes they are lengths of a radius.

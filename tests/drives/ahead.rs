@@ -5,22 +5,17 @@ use gwatt::machine::Machine;
 use gwatt::pipeline::{Options, analyze};
 use std::io::Cursor;
 
+use crate::machines::{linear_axes, machine_from};
+
 /// 500 kg and 300 N of friction; 4000 N to 20000 mm/min, falling to 500 N at 60000.
 fn machine(controller: &str) -> Machine {
-    let axis = |letter: &str| {
-        format!(
-            "[axes.{letter}]\nkind = \"linear\"\nrapid_mm_min = 60000\naccel_mm_s2 = 6000\n\
-             mass_kg = 500\ncoulomb_n = 300\nforce_curve = [{{ speed_mm_min = 0, force_n = 4000 }}, \
-             {{ speed_mm_min = 20000, force_n = 4000 }}, {{ speed_mm_min = 60000, force_n = 500 }}]\n"
-        )
-    };
-    let text = format!(
+    let drive = "coulomb_n = 300\nforce_curve = [{ speed_mm_min = 0, force_n = 4000 }, \
+                 { speed_mm_min = 20000, force_n = 4000 }, { speed_mm_min = 60000, force_n = 500 }]";
+    machine_from(&format!(
         "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n\
-         [converter]\npeak_power_w = 1e5\n{}{}",
-        axis("X"),
-        axis("Y")
-    );
-    Machine::from_toml("test.toml", &text).expect("a machine").0
+         [converter]\npeak_power_w = 1e5\n{}",
+        linear_axes("XY", [60000.0, 6000.0, 500.0], drive)
+    ))
 }
 
 fn peak_w(controller: &str, program: &str) -> f64 {

@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 use std::io::Cursor;
 
-use gwatt::pipeline::{Allowed, LimitOptions, Strategy as How, analyze, limit};
+use gwatt::pipeline::{LimitOptions, Strategy as How, analyze};
 use proptest::prelude::*;
 
 use super::{machine, options, run};
+use crate::runs::{WITH_FEEDS, limited};
 
 /// A statement of a random program.
 #[derive(Debug, Clone)]
@@ -165,20 +166,13 @@ proptest! {
         let options = options(20, 100_000, 100_000);
         let how = LimitOptions {
             strategy: if by_speed { How::Speed } else { How::Optimal },
-            law: gwatt::pipeline::Law::Exact,
-            allowed: Allowed {
-                feed: true,
-                ..Allowed::NOTHING
-            },
-            ..LimitOptions::USUAL
+            ..WITH_FEEDS
         };
-        let mut text = Vec::new();
-        let summary = limit(Cursor::new(&program), &machine, &options, how, &mut text, None).expect("a program");
+        let (text, summary) = limited(&machine, &options, how, &program).expect("a program");
         if !summary.certified {
             prop_assert!(!summary.reasons.is_empty(), "{}", program);
             return Ok(());
         }
-        let text = String::from_utf8(text).expect("text");
         let after = analyze(Cursor::new(&text), &machine, &options, None).expect("a program");
         prop_assert!(after.fits(), "{}\n{}", program, text);
         prop_assert_eq!(after.moves, summary.before.moves);

@@ -6,7 +6,8 @@ use std::f64::consts::TAU;
 use gwatt::identify::flexible::{self, Flexible, Method};
 use gwatt::identify::{Factor, Judgement, Measured, TransferFunction, judgement, simulate};
 
-use super::{Noise, PERIOD_S, choice, pair, table};
+use super::{PERIOD_S, choice, pair, table};
+use crate::random::Random;
 
 /// Steps of the simulation in a sampling period.
 const FINE: usize = 10;
@@ -24,12 +25,12 @@ fn loops(delay_s: f64) -> TransferFunction {
 
 /// Acceleration of a command over `seconds`: sines of 1 to 80 Hz.
 fn sines(seconds: f64, seed: u64) -> Vec<f64> {
-    let mut random = Noise::new(seed);
+    let mut random = Random(seed);
     let step_s = PERIOD_S / FINE as f64;
     let mut out = vec![0.0; (seconds / step_s) as usize];
     let mut hz = 1.0;
     while hz < 80.0 {
-        let phase = TAU * random.uniform();
+        let phase = TAU * random.unit();
         for (k, slot) in out.iter_mut().enumerate() {
             *slot += libm::sin(TAU * hz * step_s * k as f64 + phase);
         }
@@ -64,7 +65,7 @@ fn found(axis: &TransferFunction, measured: &str, noise: f64, seed: u64) -> Flex
     let position = sampled(&integral(&integral(&command)));
     let load = sampled(&load);
     let rms = (load.iter().map(|x| x * x).sum::<f64>() / load.len() as f64).sqrt();
-    let mut random = Noise::new(seed + 100);
+    let mut random = Random(seed + 100);
     let noisy: Vec<f64> = load
         .iter()
         .map(|x| x + noise * rms * random.normal())

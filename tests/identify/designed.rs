@@ -4,14 +4,15 @@ use gwatt::identify::design::{Bounds, Kind, Known, propose};
 use gwatt::identify::flexible::{self, Method};
 use gwatt::identify::{Judgement, Measured, Recording, TransferFunction, judgement, simulate};
 
-use super::{Noise, PERIOD_S, choice, errors, m_sequence, one_side, recording, table};
+use super::{PERIOD_S, choice, errors, m_sequence, one_side, recording, table};
+use crate::random::Random;
 
 /// Noise of a sensor, in rad/s².
 const NOISE: f64 = 6.0;
 
 fn with_noise(axis: &TransferFunction, torque: &[f64], seed: u64) -> Recording {
     let clean = simulate(axis, Measured::Direct, PERIOD_S, torque).unwrap();
-    let mut random = Noise::new(seed);
+    let mut random = Random(seed);
     let noisy: Vec<f64> = clean.iter().map(|a| a + NOISE * random.normal()).collect();
     table(&["torque_nm", "accel_rad_s2"], &[torque, &noisy])
 }

@@ -4,7 +4,9 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
+
+use super::sines;
+use crate::shop::{ended, gwatt};
 
 /// 80 kg with 30 N of Coulomb friction and 40 N of cogging every 12 mm, moved along two sines; the
 /// noise is 2 N.
@@ -20,14 +22,7 @@ fn with_cogging() -> String {
     };
     for sample in 0..4000 {
         let t = f64::from(sample) / 500.0;
-        let [mut x, mut v, mut a] = [0.0; 3];
-        for (amplitude_mm, hz) in [(60.0, 0.7), (20.0, 1.9)] {
-            let omega = TAU * hz;
-            let (sin, cos) = libm::sincos(omega * t);
-            x += amplitude_mm * sin;
-            v += amplitude_mm * omega * cos;
-            a -= amplitude_mm * omega * omega * sin;
-        }
+        let [x, v, a] = sines(t, &[(60.0, 0.7), (20.0, 1.9)]);
         let cogging_n = 40.0 * libm::sin(TAU * x / 12.0);
         let force_n = 80.0 * a * 1e-3 + 30.0 * v.signum() + cogging_n + 2.0 * noise();
         let _ = writeln!(text, "{t:.4},{force_n:.4},{x:.5},{v:.4},{a:.3}");
@@ -43,19 +38,9 @@ fn figure(text: &str, name: &str) -> f64 {
 }
 
 /// Exit code, what is printed and what is said.
-fn identify(folder: &Path, more: [&str; 2]) -> (Option<i32>, String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_gwatt"))
-        .current_dir(folder)
-        .args(["identify", "a.csv", "--axis", "X"])
-        .args(more)
-        .output()
-        .unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (
-        output.status.code(),
-        text(output.stdout),
-        text(output.stderr),
-    )
+fn identify(folder: &Path, more: [&str; 2]) -> (i32, String, String) {
+    let mut command = gwatt(folder, ["identify", "a.csv", "--axis", "X"]);
+    ended(command.args(more).output().unwrap())
 }
 
 #[test]
@@ -64,7 +49,7 @@ fn cogging_is_named_with_its_figures() {
     let at = |name: &str| folder.path().join(name);
     fs::write(at("a.csv"), with_cogging()).unwrap();
     let (code, text, errors) = identify(folder.path(), ["--json", "a.json"]);
-    assert_eq!(code, Some(0), "{errors}");
+    assert_eq!(code, 0, "{errors}");
     for (name, expected, within) in [
         ("mass", 80.0, 0.1),
         ("Coulomb friction", 30.0, 0.3),
@@ -89,7 +74,7 @@ fn cogging_is_named_with_its_figures() {
                    [axes.X]\nkind = \"linear\"\nrapid_mm_min = 9000\naccel_mm_s2 = 900\nmass_kg = 50\n";
     fs::write(at("a.toml"), machine).unwrap();
     let (code, _, errors) = identify(folder.path(), ["--into", "a.toml"]);
-    assert_eq!(code, Some(1));
+    assert_eq!(code, 1);
     assert!(errors.contains("--force writes all the same"), "{errors}");
     assert_eq!(fs::read_to_string(at("a.toml")).unwrap(), machine);
 }

@@ -6,7 +6,8 @@ use std::f64::consts::TAU;
 use gwatt::identify::rigid::{self, Friction, Rigid};
 use gwatt::identify::{Judgement, Recording, judgement};
 
-use super::{Noise, PERIOD_S, emps, table};
+use super::{PERIOD_S, emps, sines, table};
+use crate::random::Random;
 
 /// Speed and acceleration of steps from speed to speed, rad/s: each is reached by the
 /// half wave of a cosine in 0.08 s, and lasts 0.3 s in all.
@@ -33,7 +34,7 @@ fn steps(levels: &[f64]) -> Vec<[f64; 2]> {
 /// A servo of 2.6e-4 kg·m² with 3e-4 N·m·s/rad, 0.05 N·m of Coulomb friction and an offset
 /// of 0.01 N·m; torque with noise of 0.01 N·m, speed of 0.3 rad/s.
 fn servo(levels: &[f64], seed: u64) -> Recording {
-    let mut random = Noise::new(seed);
+    let mut random = Random(seed);
     let (mut torque, mut speed) = (Vec::new(), Vec::new());
     for [v, a] in steps(levels) {
         let friction = 3e-4 * v + 0.05 * v.signum() + 0.01;
@@ -97,19 +98,11 @@ fn motion_one_way_determines_the_mass() {
 
 /// 80 kg with 25 N and 300 N·s/m, more by `more` forward; a force with noise of `noise`.
 fn to_and_fro(more: f64, noise: f64, samples: u32, seed: u64) -> Recording {
-    let mut random = Noise::new(seed);
+    let mut random = Random(seed);
     let (mut force, mut position) = (Vec::new(), Vec::new());
     for k in 0..samples {
         let t = f64::from(k) * PERIOD_S;
-        let mut sums = [0.0; 3];
-        for (amplitude, hz) in [(0.05, 1.5), (0.01, 4.3), (0.003, 9.1)] {
-            let (sin, cos) = libm::sincos(TAU * hz * t);
-            let w = TAU * hz;
-            sums[0] += amplitude * sin;
-            sums[1] += amplitude * w * cos;
-            sums[2] -= amplitude * w * w * sin;
-        }
-        let [x, v, a] = sums;
+        let [x, v, a] = sines(t, &[(0.05, 1.5), (0.01, 4.3), (0.003, 9.1)]);
         let viscous = if v > 0.0 { 300.0 + more } else { 300.0 };
         force.push(80.0 * a + viscous * v + 25.0 * v.signum() + noise * random.normal());
         position.push(x);

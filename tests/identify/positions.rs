@@ -6,7 +6,8 @@ use std::f64::consts::TAU;
 use gwatt::identify::flexible::{self, Flexible, Method};
 use gwatt::identify::{Factor, Measured, TransferFunction, simulate};
 
-use super::{Noise, PERIOD_S, choice, errors, one_side, random, table, two_sides};
+use super::{PERIOD_S, choice, errors, one_side, random, table, two_sides};
+use crate::random::Random;
 
 /// What each sample adds up to.
 fn sums(x: &[f64]) -> Vec<f64> {
@@ -29,7 +30,7 @@ fn found(
     seed: u64,
 ) -> Flexible {
     let torque = random(4000, 120.0);
-    let mut noise_of = Noise::new(seed);
+    let mut noise_of = Random(seed);
     let mut slow = 0.0;
     let sum: Vec<f64> = torque
         .iter()

@@ -5,11 +5,11 @@ use std::fs;
 
 use gwatt::identify::power_fit::{self, PowerLog};
 
-use super::shared;
+use crate::evidence::shared;
 
 #[test]
 fn measured_power_is_explained() {
-    let Some(folder) = shared("measured/umich") else {
+    let Some(folder) = shared("measured/umich", "the recordings of others") else {
         return;
     };
     for (axis, mass) in [('X', 388.0), ('Y', 349.0)] {

@@ -7,7 +7,8 @@ use gwatt::identify::Recording;
 use gwatt::identify::flexible::{self, Method};
 use gwatt::identify::rigid::{self, Friction};
 
-use super::{Noise, PERIOD_S, choice, csv, m_sequence, table};
+use super::{PERIOD_S, choice, csv, m_sequence, table};
+use crate::random::Random;
 
 /// What is wrong with a recording, by the message.
 fn refusal(text: &str) -> String {
@@ -61,7 +62,7 @@ fn bad_recordings_are_refused_with_what_to_do() {
         &csv(&["force_n", "position_m"], &[&vec![1.0; n], &vec![0.5; n]]),
         "there is no excitation",
     );
-    let mut random = Noise(3);
+    let mut random = Random(3);
     let noisy: Vec<f64> = (0..n).map(|_| random.normal()).collect();
     let cut: Vec<f64> = noisy
         .iter()

@@ -6,23 +6,16 @@ use gwatt::identify::merge::force_per_torque;
 use gwatt::identify::rigid::{self, Friction};
 use gwatt::identify::{Judgement, Recording, TransferFunction, judgement};
 
-use super::{Noise, PERIOD_S, branched, emps, noisy_recording, random, spring, table};
+use super::{PERIOD_S, branched, emps, noisy_recording, random, sines, spring, table};
+use crate::random::Random;
 
 /// To and fro with friction; position with noise of an encoder.
 fn rigid_table(noise: f64) -> Recording {
-    let mut random = Noise(9);
+    let mut random = Random(9);
     let (mut force, mut position) = (Vec::new(), Vec::new());
     for k in 0..20_000 {
         let t = f64::from(k) * PERIOD_S;
-        let mut sums = [0.0; 3];
-        for (amplitude, hz) in [(0.05, 0.5), (0.02, 1.3), (0.004, 4.1)] {
-            let (sin, cos) = libm::sincos(TAU * hz * t);
-            let w = TAU * hz;
-            sums[0] += amplitude * sin;
-            sums[1] += amplitude * w * cos;
-            sums[2] -= amplitude * w * w * sin;
-        }
-        let [x, v, a] = sums;
+        let [x, v, a] = sines(t, &[(0.05, 0.5), (0.02, 1.3), (0.004, 4.1)]);
         let friction = 25.0 * v.signum() + 300.0 * v;
         force.push(80.0 * a + friction - 6.0 + 5.0 * random.normal());
         position.push(x + noise * random.normal());
@@ -87,7 +80,7 @@ fn an_axis_that_resonates_is_told_from_a_noisy_one() {
         assert_eq!(verdict, Judgement::Good, "seed {seed}, {rel_error}");
         assert!(rel_error > 0.15, "{rel_error}");
         // A torque that is as noisy makes the ratio of both seem another one.
-        let mut noise = Noise::new(seed);
+        let mut noise = Random(seed);
         let mut noisy = |u: &f64| u + 0.2 * noise.normal();
         let measured: Vec<f64> = torque.iter().map(&mut noisy).collect();
         let motion: Vec<f64> = torque.iter().map(|u| 50.0 * u).collect();
@@ -117,14 +110,7 @@ fn what_a_motor_does_is_referred_to_the_slide() {
         let (mut torque, mut motion) = (Vec::new(), Vec::new());
         for k in 0..8_000 {
             let t = f64::from(k) * PERIOD_S;
-            let mut sums = [0.0; 3];
-            for (amplitude, hz) in [(0.05, 0.5), (0.02, 1.3), (0.004, 4.1)] {
-                let (sin, cos) = libm::sincos(TAU * hz * t);
-                let w = TAU * hz;
-                sums[0] += amplitude * sin;
-                sums[1] += amplitude * w * cos;
-                sums[2] -= amplitude * w * w * sin;
-            }
+            let sums = sines(t, &[(0.05, 0.5), (0.02, 1.3), (0.004, 4.1)]);
             let [_, v, a] = sums;
             let force = 100.0 * a + 300.0 * v + 25.0 * v.signum();
             torque.push(force / per_metre);

@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use gwatt::identify::flexible::{self, Flexible, Method};
 use gwatt::identify::{Factor, Judgement, judgement};
 
-use super::{Noise, PERIOD_S, choice, random, table};
+use super::{PERIOD_S, choice, random, table};
+use crate::random::Random;
 
 /// Steps of the simulation in a sampling period.
 const FINE: usize = 20;
@@ -48,7 +49,7 @@ fn axis(torque: &[f64], viscous: f64, coulomb: f64) -> [Vec<f64>; 2] {
 
 fn noisy(x: &[f64], share: f64, seed: u64) -> Vec<f64> {
     let rms = (x.iter().map(|x| x * x).sum::<f64>() / x.len() as f64).sqrt();
-    let mut random = Noise::new(seed);
+    let mut random = Random(seed);
     x.iter()
         .map(|x| x + share * rms * random.normal())
         .collect()

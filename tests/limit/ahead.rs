@@ -2,11 +2,12 @@
 //! that fit under it.
 
 use super::{RIG, Rig, Run};
-use crate::rows::Rows;
 use gwatt::machine::Machine;
-use gwatt::pipeline::{Certificate, Row, analyze, motion};
+use gwatt::pipeline::{Certificate, Row, motion};
 use proptest::prelude::*;
 use std::fmt::Write as _;
+
+use crate::runs::rows_with;
 
 const LINUXCNC: Rig = Rig {
     controller: "linuxcnc",
@@ -19,17 +20,9 @@ const GRBL: Rig = Rig {
 
 /// Rows of a program, dwells left aside.
 fn rows(machine: &Machine, how: Run, program: &str) -> Vec<Row> {
-    let mut rows = Rows::default();
-    let options = super::options(how);
-    analyze(
-        std::io::Cursor::new(program),
-        machine,
-        &options,
-        Some(&mut rows),
-    )
-    .expect("a program");
-    rows.0.retain(|row| row.kind.name() != "dwell");
-    rows.0
+    let mut rows = rows_with(machine, &super::options(how), program);
+    rows.retain(|row| row.kind.name() != "dwell");
+    rows
 }
 
 fn report(rig: Rig, program: &str) -> Vec<Row> {

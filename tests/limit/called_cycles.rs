@@ -4,14 +4,9 @@ use insta::assert_snapshot;
 
 use crate::shop::Shop;
 
-fn shop(power_w: f64) -> Shop {
-    let converter = format!("peak_power_w = {power_w}");
-    Shop::mill("siemens", &converter, "[path]\nrapid = \"linear\"", "")
-}
-
 /// The message of a program that stays as it is.
 fn stays(program: &str, options: &str) -> String {
-    let shop = shop(400.0);
+    let shop = Shop::straight("siemens", 400.0);
     shop.put("a.nc", program);
     let (code, text, errors) = shop.run(format!("limit a.nc {options}").trim_end());
     assert_eq!((code, text.as_str()), (1, ""), "{errors}");
@@ -25,7 +20,7 @@ const HOLES: &str = "G17 G54 G90 G60 F200\nG0 X0 Y0 Z50\nN30 MCALL CYCLE81(50,0,
 /// and the cycle is called at each place.
 #[test]
 fn the_way_from_hole_to_hole() {
-    assert_snapshot!(shop(700.0).limited(HOLES, ""), @r"
+    assert_snapshot!(Shop::straight("siemens", 700.0).limited(HOLES, ""), @r"
     G17 G54 G90 G60 F200
     G0 X0 Y0 Z50
     N30 ;MCALL CYCLE81(50,0,2,-10) ; 6H7
@@ -44,7 +39,7 @@ fn the_way_from_hole_to_hole() {
 /// With `--allow expand` the moves of the cycle stand there, and a comment names it.
 #[test]
 fn cycles_are_written_out() {
-    assert_snapshot!(shop(450.0).limited(HOLES, "--allow expand"), @r"
+    assert_snapshot!(Shop::straight("siemens", 450.0).limited(HOLES, "--allow expand"), @r"
     G17 G54 G90 G60 F200
     G0 X0 Y0 Z50
     N30 ;MCALL CYCLE81(50,0,2,-10) ; 6H7
@@ -63,7 +58,7 @@ fn cycles_are_written_out() {
     ");
     // Feeds of its own, a dwell, and a call without MCALL.
     let bore = "G17 G54 G90 G60 F200\nG0 X0 Y0 Z50\nCYCLE85(50,0,2,-10,,0.5,120,300)\nG1 X5\nM30\n";
-    assert_snapshot!(shop(350.0).limited(bore, "--allow expand"), @r"
+    assert_snapshot!(Shop::straight("siemens", 350.0).limited(bore, "--allow expand"), @r"
     G17 G54 G90 G60 F200
     G1 X0 Y0 Z50 F17142
     ;CYCLE85(50,0,2,-10,,0.5,120,300)
@@ -78,7 +73,7 @@ fn cycles_are_written_out() {
     ");
     let deep = "G17 G54 G90 G60 F200\nG0 X0 Y0 Z50\nMCALL CYCLE83(50,0,2,-20,,-8,,2,,,0.5,1)\n\
                 G1 X3\nMCALL\nM30\n";
-    assert_snapshot!(shop(450.0).limited(deep, "--allow expand"), @r"
+    assert_snapshot!(Shop::straight("siemens", 450.0).limited(deep, "--allow expand"), @r"
     G17 G54 G90 G60 F200
     G0 X0 Y0 Z50
     ;MCALL CYCLE83(50,0,2,-20,,-8,,2,,,0.5,1)
@@ -107,7 +102,7 @@ fn cycles_are_written_out() {
 fn patterns_are_written_out() {
     let row = "G17 G54 G90 G60 F200\nG0 X0 Y0 Z50\nTRANS X10 Y20\nAROT Z30\n\
                MCALL CYCLE82(50,0,2,-10,,0.2)\nHOLES1(0,0,0,10,100,3)\nMCALL\nM30\n";
-    assert_snapshot!(shop(450.0).limited(row, "--allow expand"), @r"
+    assert_snapshot!(Shop::straight("siemens", 450.0).limited(row, "--allow expand"), @r"
     G17 G54 G90 G60 F200
     G0 X0 Y0 Z50
     TRANS X10 Y20

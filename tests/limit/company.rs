@@ -5,24 +5,11 @@ use insta::assert_snapshot;
 
 use crate::shop::Shop;
 
-fn shop(controller: &str, power_w: f64) -> Shop {
-    let rest = "[path]\nrapid = \"linear\"";
-    Shop::mill(controller, &format!("peak_power_w = {power_w}"), rest, "")
-}
-
-#[track_caller]
-fn limited(shop: &Shop, program: &str) -> String {
-    shop.put("a.nc", program);
-    let (code, _, errors) = shop.run("limit a.nc --allow feed -o out.nc");
-    assert_eq!(code, 0, "{errors}");
-    shop.get("out.nc")
-}
-
 /// A dwell in the block comes before its motion, which stops as it did.
 #[test]
 fn a_dwell_before_the_rapid() {
     let program = "G21 G90 G64\nG4 P0.1 G0 X400 Y300\nG1 X0 F900\nM2\n";
-    assert_snapshot!(limited(&shop("linuxcnc", 520.0), program), @r"
+    assert_snapshot!(Shop::straight("linuxcnc", 520.0).written(program, "--allow feed"), @r"
     G21 G90 G64
     G4 P0
     G4 P0.1 G1 X400 Y300 F37500
@@ -36,7 +23,7 @@ fn a_dwell_before_the_rapid() {
 fn tools_stops_and_ends() {
     let program = "G21 G90 G54\nG0 X400 Y300 T3 M8\nX0 Y50 Z40 M0 (LOOK)\nM1 G0 X300\n\
                    G1 Z30 F400\nG0 X0 Y300 M9 M30";
-    assert_snapshot!(limited(&shop("fanuc", 520.0), program), @r"
+    assert_snapshot!(Shop::straight("fanuc", 520.0).written(program, "--allow feed"), @r"
     G21 G90 G54
     G4 P1
     G9 G1 X400 Y300 T3 M8 F22651.
@@ -53,7 +40,7 @@ fn tools_stops_and_ends() {
     G0 F400
     M30
     ");
-    assert_snapshot!(limited(&shop("linuxcnc", 520.0), program), @r"
+    assert_snapshot!(Shop::straight("linuxcnc", 520.0).written(program, "--allow feed"), @r"
     G21 G90 G54
     G4 P0
     G1 X400 Y300 T3 M8 F37500
@@ -70,7 +57,7 @@ fn tools_stops_and_ends() {
     ");
     // Of a feed alone F changes.
     let program = "G1 X400 F40000 M1\nX0 Y10\nG0 T2 Y300\nM2\n";
-    assert_snapshot!(limited(&shop("linuxcnc", 300.0), program), @r"
+    assert_snapshot!(Shop::straight("linuxcnc", 300.0).written(program, "--allow feed"), @r"
     G1 X400 F23995
     F40000
     M1
@@ -87,7 +74,7 @@ fn tools_stops_and_ends() {
 #[test]
 fn with_blocks_that_may_be_skipped() {
     let program = "G21 G90\nG0 X10\n/G0 X400 Y300 M1\nG0 X20 Y0\nM30\n";
-    assert_snapshot!(limited(&shop("haas", 520.0), program), @r"
+    assert_snapshot!(Shop::straight("haas", 520.0).written(program, "--allow feed"), @r"
     G21 G90
     G0 X10
     /G4 P1
@@ -105,7 +92,7 @@ fn with_blocks_that_may_be_skipped() {
 fn sinumerik() {
     let program = "G17 G90 G94 G64\nT1 D1 G0 X400 Y300\nM3 S1000 M8 G0 X200 Y10\n\
                    SUPA G0 X0 Y300 Z300 D0\nG153 X400 Y10\nG0 X10 Y300 M0\nY0 M30\n";
-    assert_snapshot!(limited(&shop("siemens", 520.0), program), @r"
+    assert_snapshot!(Shop::straight("siemens", 520.0).written(program, "--allow feed"), @r"
     G17 G90 G94 G64
     T1 D1 G1 X400 Y300 F12000
     M3 S1000 M8 G1 X200 Y10 F11661
@@ -124,10 +111,8 @@ fn sinumerik() {
 #[test]
 fn what_stays() {
     let refused = |controller: &str, program: &str, reason: &str| {
-        let shop = shop(controller, 520.0);
-        shop.put("a.nc", program);
-        let (code, _, errors) = shop.run("limit a.nc --allow feed -o out.nc");
-        assert_eq!(code, 1, "{errors}");
+        let shop = Shop::straight(controller, 520.0);
+        let errors = shop.refused(program, "--allow feed");
         assert!(errors.contains(reason), "{errors}");
     };
     // What M6 runs may look at the state.
@@ -157,7 +142,7 @@ fn reference_point_of_sinumerik() {
     let known = "[path]\nrapid = \"linear\"";
     let shop = Shop::mill("siemens", "peak_power_w = 700", known, "reference_mm = 300");
     let program = "G17 G90 G94 G54\nG0 X10\nG1 X20 Y10 F500\nG74 X1=0 Y1=0\nX310\nM30\n";
-    assert_snapshot!(limited(&shop, program), @r"
+    assert_snapshot!(shop.written(program, "--allow feed"), @r"
     G17 G90 G94 G54
     G1 X10 F20571
     G1 X20 Y10 F500
@@ -179,7 +164,7 @@ fn reference_point_of_sinumerik() {
         &tool,
         "the length of the tool is in force: write D0 before it",
     );
-    limited(&shop, &tool.replace("G74", "D0\nG74"));
+    shop.written(&tool.replace("G74", "D0\nG74"), "--allow feed");
     let fixed = program.replace("G74", "G75");
     refused(&shop, &fixed, "give further_reference_mm of the axes");
     let none = program.replace("G0 X10\nG1 X20 Y10 F500\n", "");
@@ -193,7 +178,7 @@ fn reference_point_of_sinumerik() {
     // Slowly enough, it fits as it is.
     let slow = "reference_mm = 300\nreference_mm_min = 3000";
     let shop = Shop::mill("siemens", "peak_power_w = 700", known, slow);
-    assert_eq!(limited(&shop, program), program);
+    assert_eq!(shop.written(program, "--allow feed"), program);
 }
 
 /// RS274/NGC changes the tool before all else but S: the words stand on a line before the
@@ -201,7 +186,7 @@ fn reference_point_of_sinumerik() {
 #[test]
 fn tools_that_are_changed_before_the_motion() {
     let program = "G21 G90\nN10 T2 M6 G0 X400 Y300\nG1 Z30 F400\nG0 M6 X0 T3 Y300\nM6 G1 X100 F30000\nG0 X110\nM2\n";
-    assert_snapshot!(limited(&shop("linuxcnc", 520.0), program), @r"
+    assert_snapshot!(Shop::straight("linuxcnc", 520.0).written(program, "--allow feed"), @r"
     G21 G90
     T2 M6
     G4 P0
@@ -216,13 +201,11 @@ fn tools_that_are_changed_before_the_motion() {
     M2
     ");
     // With S the tool is changed in between.
-    let refused = shop("linuxcnc", 520.0);
-    refused.put(
-        "a.nc",
+    let refused = Shop::straight("linuxcnc", 520.0);
+    let errors = refused.refused(
         "G21 G90\nT2 M6 S500 G0 X400 Y300\nG1 Z30 F400\nM30\n",
+        "--allow feed",
     );
-    let (code, _, errors) = refused.run("limit a.nc --allow feed -o out.nc");
-    assert_eq!(code, 1);
     assert!(errors.contains("changes the tool"), "{errors}");
 }
 
@@ -233,7 +216,7 @@ fn a_change_of_the_tool_that_moves_z() {
     let rest = "[path]\nrapid = \"linear\"\n[language]\ntool_change = \"before-motion\"\n\
                 [offsets]\nG54 = {}\n";
     let shop = Shop::mill("haas", "peak_power_w = 520", rest, "reference_mm = 300");
-    assert_snapshot!(limited(&shop, "G21 G90 G54\nG1 Z30. F400\nM6 T2\nG0 X10.\nM30\n"), @r"
+    assert_snapshot!(shop.written("G21 G90 G54\nG1 Z30. F400\nM6 T2\nG0 X10.\nM30\n", "--allow feed"), @r"
     G21 G90 G54
     G1 Z30. F400
     G4 P1
@@ -247,12 +230,10 @@ fn a_change_of_the_tool_that_moves_z() {
     for order in ["before-motion", "after-motion"] {
         let rest = rest.replace("before-motion", order);
         let shop = Shop::mill("haas", "peak_power_w = 520", &rest, "reference_mm = 300");
-        shop.put(
-            "a.nc",
+        let errors = shop.refused(
             "G21 G90 G54\nG1 Z30. F400\nG0 X400. Y290. M6 T2\nM30\n",
+            "--allow feed",
         );
-        let (code, _, errors) = shop.run("limit a.nc --allow feed -o out.nc");
-        assert_eq!(code, 1, "{errors}");
         let why = "the machine moves axes of itself in it";
         let help = "write a change of the tool on a line of its own";
         assert!(errors.contains(why) && errors.contains(help), "{errors}");
@@ -279,9 +260,7 @@ fn tools_that_change_when_the_machine_file_says() {
     let program = "G21 G90 G54\nG1 Z30. F400\nG0 X400. Y290. M6 T2\nG91 G28 X0 Y0 T3 M6\nM30\n";
     for controller in ["fanuc", "haas"] {
         let refused = shop(controller, "");
-        refused.put("a.nc", program);
-        let (code, _, errors) = refused.run("limit a.nc --allow feed -o out.nc");
-        assert_eq!(code, 1, "{errors}");
+        let errors = refused.refused(program, "--allow feed");
         assert_eq!(
             errors
                 .matches("it changes the tool, before or after its motion")
@@ -293,7 +272,7 @@ fn tools_that_change_when_the_machine_file_says() {
                     \"after-motion\" under [language] of the machine file";
         assert!(errors.contains(help), "{errors}");
     }
-    assert_snapshot!(limited(&shop("fanuc", "before-motion"), program), @r"
+    assert_snapshot!(shop("fanuc", "before-motion").written(program, "--allow feed"), @r"
     G21 G90 G54
     G1 Z30. F400
     T2 M6
@@ -307,7 +286,7 @@ fn tools_that_change_when_the_machine_file_says() {
     G0 F400
     M30
     ");
-    assert_snapshot!(limited(&shop("fanuc", "after-motion"), program), @r"
+    assert_snapshot!(shop("fanuc", "after-motion").written(program, "--allow feed"), @r"
     G21 G90 G54
     G1 Z30. F400
     G4 P1
@@ -321,8 +300,6 @@ fn tools_that_change_when_the_machine_file_says() {
     ");
     // S may come before the change or after it.
     let refused = shop("fanuc", "after-motion");
-    refused.put("a.nc", &program.replace("M6 T2", "M6 T2 S500"));
-    let (code, _, errors) = refused.run("limit a.nc --allow feed -o out.nc");
-    assert_eq!(code, 1);
+    let errors = refused.refused(&program.replace("M6 T2", "M6 T2 S500"), "--allow feed");
     assert!(errors.contains("it stops, changes the tool"), "{errors}");
 }

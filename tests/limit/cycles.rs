@@ -6,42 +6,17 @@ use std::fmt::Write as _;
 use insta::assert_snapshot;
 
 use super::same_moves::same_moves;
-use crate::oracle::random::Random;
+use crate::random::Random;
 use crate::shop::Shop;
-
-/// A mill with linear rapids and this power.
-fn shop(controller: &str, power_w: f64) -> Shop {
-    let converter = format!("peak_power_w = {power_w}");
-    Shop::mill(controller, &converter, "[path]\nrapid = \"linear\"", "")
-}
-
-/// What `limit` writes.
-#[track_caller]
-fn limited(shop: &Shop, program: &str, allow: &str) -> String {
-    shop.put("a.nc", program);
-    let (code, _, errors) = shop.run(&format!("limit a.nc --allow {allow} -o out.nc"));
-    assert_eq!(code, 0, "{errors}");
-    shop.get("out.nc")
-}
-
-/// Why `limit` writes nothing.
-#[track_caller]
-fn refused(shop: &Shop, program: &str, allow: &str) -> String {
-    shop.put("a.nc", program);
-    let (code, _, errors) = shop.run(&format!("limit a.nc --allow {allow} -o out.nc"));
-    assert_eq!(code, 1, "{errors}");
-    assert!(!shop.has("out.nc"));
-    errors
-}
 
 /// The rapids of Z, 48 mm, fit; those of X and Y, both together, do not.
 #[test]
 fn the_way_to_a_hole_needs_no_permission() {
-    let shop = shop("fanuc", 600.0);
+    let shop = Shop::straight("fanuc", 600.0);
     let program = "G21 G90 G54\nG0 X0. Y0. Z50.\nN10 G98 G81 X400. Y300. Z-12. R40. F200.\n\
                    X410.\nN20 X0. Y0. (LAST)\nG80\nG84 X400. Y300. Z-8. R40. F1000.\n\
                    G80 G0 Z50.\nM30\n";
-    let text = limited(&shop, program, "feed");
+    let text = shop.written(program, "--allow feed");
     same_moves(&shop, &text);
     assert_snapshot!(text, @r"
     G21 G90 G54
@@ -66,11 +41,11 @@ fn the_way_to_a_hole_needs_no_permission() {
 
 #[test]
 fn all_moves_of_a_cycle_are_written_out() {
-    let shop = shop("fanuc", 300.0);
+    let shop = Shop::straight("fanuc", 300.0);
     let program = "G21 G90\nG1 X1. F500.\nN10 G99 G83 X200. Y-80. Z-10. R2. Q4. F150. M8 (FIRST)\n\
                    G98 X250. Z-3.\nG80\nX260.\nG82 X50. Y50. Z-3. R1. P500 F120.\nG91 X10. K2\n\
                    G90 G80 G0 Z50.\nM30";
-    let text = limited(&shop, program, "feed,expand");
+    let text = shop.written(program, "--allow feed,expand");
     same_moves(&shop, &text);
     assert_snapshot!(text, @r"
     G21 G90
@@ -130,10 +105,10 @@ fn all_moves_of_a_cycle_are_written_out() {
 /// stops.
 #[test]
 fn linuxcnc_keeps_its_exact_path() {
-    let shop = shop("linuxcnc", 400.0);
+    let shop = Shop::straight("linuxcnc", 400.0);
     let program = "G21 G90 G64 P0.05\nG0 Z10\nG99 G81 X100 Y80 Z-1 R2 F300\nY90\nG80\n\
                    G1 X0 F800\nM2\n";
-    let text = limited(&shop, program, "expand");
+    let text = shop.written(program, "--allow expand");
     same_moves(&shop, &text);
     assert_snapshot!(text, @r"
     G21 G90 G64 P0.05
@@ -157,10 +132,10 @@ fn linuxcnc_keeps_its_exact_path() {
 /// Radius and angle say where the holes are, the angle in increments too.
 #[test]
 fn holes_in_polar_words_are_written_out() {
-    let shop = shop("linuxcnc", 400.0);
+    let shop = Shop::straight("linuxcnc", 400.0);
     let program = "G21 G90 G64 P0.05\nG0 X40 Y0 Z2\nG99 G81 R2 Z-1 F300\n^120\nG90 @60 ^33\n\
                    G91 G81 @20 R0 Z-3 L3\nG90 G0 X40 Y0\nG91 G81 ^[360/5] R0 Z-3 L5\nG80\nM2\n";
-    let text = limited(&shop, program, "expand");
+    let text = shop.written(program, "--allow expand");
     same_moves(&shop, &text);
     assert!(text.contains("(G81 written out)"), "{text}");
 }
@@ -169,21 +144,21 @@ fn holes_in_polar_words_are_written_out() {
 /// series' as long as no other motion comes between.
 #[test]
 fn increments_go_on_at_the_level_of_the_first() {
-    let shop = shop("linuxcnc", 700.0);
+    let shop = Shop::straight("linuxcnc", 700.0);
     // The way to X300 Y300 alone is too much.
     let program = "G21 G90 G0 Z40 F300\nG81 X1 Y1 R2 Z-3\nX300 Y300\n\
                    G91 G81 X1 Y1 R-20 Z-3 L2\nG80\nM2\n";
-    let text = limited(&shop, program, "expand");
+    let text = shop.written(program, "--allow expand");
     same_moves(&shop, &text);
     assert_eq!(text.matches("(G81 written out)").count(), 3, "{text}");
 }
 
 #[test]
 fn a_turning_cycle_is_written_out() {
-    let shop = shop("linuxcnc", 200.0);
+    let shop = Shop::straight("linuxcnc", 200.0);
     let program = "G21 G18 G90 G8 F400\nG0 X60 Z2\no100 sub\nG1 X20 Z0 F400\nG1 Z-10\nG3 X24 Z-14 K-4\n\
                    G1 X50 Z-20\no100 endsub\nG71 Q100 X60 Z2 D0.5 I8 R1\nG70 Q100 X60 Z2\nG0 X100\nM2\n";
-    let text = limited(&shop, program, "feed,expand");
+    let text = shop.written(program, "--allow feed,expand");
     same_moves(&shop, &text);
     assert!(text.contains("(G71 written out)\n"), "{text}");
     assert!(text.contains("G3 X24. Z-14."), "{text}");
@@ -193,10 +168,10 @@ fn a_turning_cycle_is_written_out() {
 /// from which it began after it.
 #[test]
 fn the_rapids_of_a_tap_are_written_out() {
-    let fanuc = shop("fanuc", 300.0);
+    let fanuc = Shop::straight("fanuc", 300.0);
     let program = "G21 G90 G54 G0 Z50.\nG98 G84 X400. Y300. Z-12. R2. F1000.\nX0.\nG80\n\
                    G99 G84 X400. Z-12. R2.\nG80 G0 Z50.\nM30\n";
-    let text = limited(&fanuc, program, "feed,expand");
+    let text = fanuc.written(program, "--allow feed,expand");
     same_moves(&fanuc, &text);
     assert_snapshot!(text, @r"
     G4 P1
@@ -226,7 +201,7 @@ fn the_rapids_of_a_tap_are_written_out() {
     ");
     // In the other planes as well.
     let program = "G21 G90 G54 G19 G0 X50. Z10.\nG98 G84 Y300. Z90. X-12. R2. F1000.\nG80\nM30\n";
-    let text = limited(&fanuc, program, "feed,expand");
+    let text = fanuc.written(program, "--allow feed,expand");
     same_moves(&fanuc, &text);
     assert_snapshot!(text, @r"
     G4 P1
@@ -241,10 +216,10 @@ fn the_rapids_of_a_tap_are_written_out() {
     G0 F1000.
     M30
     ");
-    let linuxcnc = shop("linuxcnc", 300.0);
+    let linuxcnc = Shop::straight("linuxcnc", 300.0);
     // A hole below its level R is left upwards first.
     let program = "G21 G90 G0 Z1\nM3 S100\nG99 G84 X400 Y300 Z-10 R50 F100\nG80\nM2\n";
-    let text = limited(&linuxcnc, program, "feed,expand");
+    let text = linuxcnc.written(program, "--allow feed,expand");
     same_moves(&linuxcnc, &text);
     assert_snapshot!(text, @r"
     G21 G90 G0 Z1
@@ -263,9 +238,9 @@ fn the_rapids_of_a_tap_are_written_out() {
 
 #[test]
 fn what_is_not_written_out_is_said() {
-    let shop = shop("fanuc", 300.0);
+    let shop = Shop::straight("fanuc", 300.0);
     let drill = "G21 G90 G0 Z50.\nG81 X400. Y300. Z-12. R2. F200.\nX0.\nG80\nM30\n";
-    let found = refused(&shop, drill, "feed");
+    let found = shop.refused(drill, "--allow feed");
     assert!(
         found.contains("--allow expand writes canned cycles out as single blocks"),
         "{found}"
@@ -284,19 +259,19 @@ fn what_is_not_written_out_is_said() {
              before it",
         ),
     ] {
-        let found = refused(&shop, &program, "feed,expand");
+        let found = shop.refused(&program, "--allow feed,expand");
         let note = format!("the canned cycle is not written out: {why}");
         assert!(found.contains(&note), "{found}");
     }
     // LinuxCNC comes back to the level of G98 by the feed of the tap.
     let tap = "G21 G90 S500 M3\nG0 Z50\nG98 G84 X0 Y0 Z-10 R2 F750\nG80\nM2\n";
-    let found = refused(&self::shop("linuxcnc", 300.0), tap, "feed,expand");
+    let found = Shop::straight("linuxcnc", 300.0).refused(tap, "--allow feed,expand");
     let note = "the canned cycle is not written out: it taps\n";
     assert_eq!(found.matches(note).count(), 1, "{found}");
     // In a loop it is another place each time.
     let around = "G21 G90 G0 Z50.\n#1=0\nWHILE[#1 LT 2]DO1\nG81 X[400.*#1] Y300. Z-12. R2. F200.\n\
                   G80\n#1=#1+1\nEND1\nM30\n";
-    let found = refused(&shop, around, "feed,expand");
+    let found = shop.refused(around, "--allow feed,expand");
     assert!(
         found.contains("it does something else each time it runs"),
         "{found}"
@@ -304,7 +279,7 @@ fn what_is_not_written_out_is_said() {
     let around = around
         .replace("[400.*#1]", "400.")
         .replace("G80\n#1", "G80 G0 X0. Y0. Z50.\n#1");
-    let text = limited(&shop, &around, "feed,expand");
+    let text = shop.written(&around, "--allow feed,expand");
     same_moves(&shop, &text);
 }
 
@@ -361,7 +336,7 @@ fn random_cycles(count: u64) {
         for seed in 0..count {
             let mut random = Random::new(seed);
             let program = any_program(&mut random, controller);
-            let shop = shop(controller, 250.0 + 50.0 * random.below(6) as f64);
+            let shop = Shop::straight(controller, 250.0 + 50.0 * random.below(6) as f64);
             shop.put("a.nc", &program);
             let (code, _, errors) = shop.run("limit a.nc --allow feed,expand -o out.nc");
             let context = format!("{controller} {seed}\n{program}\n{errors}");
@@ -391,7 +366,7 @@ fn many_random_cycles_are_made_to_fit() {
 fn a_cycle_next_to_one_that_is_written_out_may_follow() {
     let program = "G17 G99 G90 G21 F250\nG0 X0 Y0 Z50\nG81 X25 Y50 Z12 R75\n\
                    G81 X25 Y75 Z100 R125\nM2\n";
-    let shop = shop("linuxcnc", 1000.0);
+    let shop = Shop::straight("linuxcnc", 1000.0);
     for power_w in [1000, 1100, 1150, 1200, 1250] {
         let mut machine = format!(
             "schema = 1\nname = \"mill\"\ncontroller = \"linuxcnc\"\n[converter]\n\
@@ -405,7 +380,7 @@ fn a_cycle_next_to_one_that_is_written_out_may_follow() {
             );
         }
         shop.put("mill.toml", &machine);
-        let text = limited(&shop, program, "feed,expand");
+        let text = shop.written(program, "--allow feed,expand");
         same_moves(&shop, &text);
         assert!(text.contains("(G81 written out)"), "{power_w} W: {text}");
     }

@@ -5,11 +5,6 @@ use insta::assert_snapshot;
 
 use crate::shop::Shop;
 
-fn shop(controller: &str, power_w: f64) -> Shop {
-    let converter = format!("peak_power_w = {power_w}");
-    Shop::mill(controller, &converter, "[path]\nrapid = \"linear\"", "")
-}
-
 /// Each mode of SINUMERIK has a kin with a feed per minute and the same rule for the spindle, so
 /// that constant surface speed goes on.
 #[test]
@@ -17,7 +12,7 @@ fn sinumerik_keeps_the_rule_for_the_spindle() {
     let program = |mode: &str| {
         format!("G18 G54 G90 G60\nLIMS=3000\n{mode}\nG0 X400 Z300\nG1 Z250 F0.2\nG0 X0 Z0\nM30\n")
     };
-    let shop = shop("siemens", 600.0);
+    let shop = Shop::straight("siemens", 600.0);
     assert_snapshot!(shop.limited(&program("G96 S200 M3"), ""), @r"
     G18 G54 G90 G60
     LIMS=3000
@@ -63,7 +58,7 @@ fn sinumerik_keeps_the_rule_for_the_spindle() {
 #[test]
 fn an_inverse_time_has_no_feed_to_put_back() {
     let program = "G21 G90 G54 G93\nG0 X400. Y300.\nG1 X390. F100.\nG0 X0. Y0.\nM30\n";
-    assert_snapshot!(shop("fanuc", 600.0).limited(program, ""), @r"
+    assert_snapshot!(Shop::straight("fanuc", 600.0).limited(program, ""), @r"
     G21 G90 G54 G93
     G94
     G4 P1
@@ -76,7 +71,7 @@ fn an_inverse_time_has_no_feed_to_put_back() {
     G0 G93
     M30
     ");
-    assert_snapshot!(shop("linuxcnc", 600.0).limited(program, ""), @r"
+    assert_snapshot!(Shop::straight("linuxcnc", 600.0).limited(program, ""), @r"
     G21 G90 G54 G93
     G94
     G4 P0
@@ -87,7 +82,7 @@ fn an_inverse_time_has_no_feed_to_put_back() {
     G0 X0. Y0.
     M30
     ");
-    assert_snapshot!(shop("grbl", 600.0).limited(program, ""), @r"
+    assert_snapshot!(Shop::straight("grbl", 600.0).limited(program, ""), @r"
     G21 G90 G54 G93
     G94
     G1 X400. Y300. F26966
@@ -105,7 +100,7 @@ fn an_inverse_time_has_no_feed_to_put_back() {
 #[test]
 fn an_inverse_time_is_lowered_block_by_block() {
     let lowered = |controller: &str, program: &str| {
-        let shop = shop(controller, 300.0);
+        let shop = Shop::straight(controller, 300.0);
         shop.limited(program, "--allow feed")
     };
     let f = |text: &str, line: usize| -> f64 {
@@ -152,7 +147,7 @@ fn an_inverse_time_is_lowered_block_by_block() {
         "{inches}{mm}"
     );
     // Under compensation the shifted way counts, and the block stays.
-    let shop = shop("siemens", 300.0);
+    let shop = Shop::straight("siemens", 300.0);
     let (code, _, errors) = shop.limit(
         "G71 G90 G60\n$TC_DP6[1,1]=5\nT1 D1\nG1 G41 X10 Y10 F1000\nG93 X400 F100\nG94 G40 X410 Y30 \
          F500\nM30\n",
@@ -166,14 +161,14 @@ fn an_inverse_time_is_lowered_block_by_block() {
 #[test]
 fn the_word_of_the_block_itself() {
     let program = "G18 G54 G90 G60 S2000 M3\nG0 G95 X400 Z300\nG1 Z250 F0.2\nM30\n";
-    assert_snapshot!(shop("siemens", 600.0).limited(program, ""), @r"
+    assert_snapshot!(Shop::straight("siemens", 600.0).limited(program, ""), @r"
     G18 G54 G90 G60 S2000 M3
     G1 G94 X400 Z300 F26966
     G0 G95
     G1 Z250 F0.2
     M30
     ");
-    let shop = shop("fanuc", 600.0);
+    let shop = Shop::straight("fanuc", 600.0);
     shop.put(
         "a.nc",
         "G21 G90 G54\nG93 G0 X400. Y300.\nG1 X390. F100.\nM30\n",

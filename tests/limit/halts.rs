@@ -5,25 +5,20 @@ use proptest::prelude::*;
 
 use crate::shop::Shop;
 
-fn shop(controller: &str, power_w: f64) -> Shop {
-    let converter = format!("peak_power_w = {power_w}");
-    Shop::mill(controller, &converter, "[path]\nrapid = \"linear\"", "")
-}
-
 /// At F20000 an axis draws 0.3333·(200·3 + 100)/0.8 = 292 W, and 100 W at rest: by itself
 /// it fits under 450 W. Blended with the next one it draws 683 W, so that 350 W are shared
 /// by both at F12000: 5 s against 3 s and 0.22 s for the stop.
 #[test]
 fn a_stop_takes_the_place_of_a_lower_feed() {
     let program = "G21 G90 G64\nG1 X1000. F20000.\nN20 Y1000.\nX0. Y0.\nM30\n";
-    let (code, text, errors) = shop("fanuc", 450.0).limit(program, "--allow feed,stop");
+    let (code, text, errors) = Shop::straight("fanuc", 450.0).limit(program, "--allow feed,stop");
     assert_eq!(code, 0, "{errors}");
     // X and Y together have 350 W, 0.2 m/s each: 0.2·2·(200·3 + 100)/0.8.
     assert_eq!(
         text,
         "G21 G90 G64\nG9 G1 X1000. F20000.\nN20 G9 Y1000.\nX0. Y0. F16970.\nF20000.\nM30\n"
     );
-    let (code, text, _) = shop("fanuc", 450.0).limit(program, "--allow feed");
+    let (code, text, _) = Shop::straight("fanuc", 450.0).limit(program, "--allow feed");
     assert_eq!(code, 0);
     assert!(text.contains("G1 X1000. F11999.\n"), "{text}");
 }
@@ -32,9 +27,12 @@ fn a_stop_takes_the_place_of_a_lower_feed() {
 #[test]
 fn short_blocks_take_the_lower_feed() {
     let program = "G21 G90 G64\nG1 X10. F20000.\nY10.\nX0.\nY0.\nM30\n";
-    let with = shop("fanuc", 450.0).limit(program, "--allow feed,stop");
+    let with = Shop::straight("fanuc", 450.0).limit(program, "--allow feed,stop");
     assert_eq!(with.0, 0, "{}", with.2);
-    assert_eq!(with, shop("fanuc", 450.0).limit(program, "--allow feed"));
+    assert_eq!(
+        with,
+        Shop::straight("fanuc", 450.0).limit(program, "--allow feed")
+    );
 }
 
 /// SINUMERIK: a rapid that runs by itself stands at both ends, and so does the feed in its
@@ -45,13 +43,13 @@ fn a_rapid_by_itself_stays_so() {
         "G90 G71\nG0 X100 Y50\nM30\n",
         "G90 G71 G64\nT1 D1\nG0 X100 Y50\n",
     ] {
-        let (code, text, errors) = shop("siemens", 600.0).limit(program, "");
+        let (code, text, errors) = Shop::straight("siemens", 600.0).limit(program, "");
         assert_eq!(code, 0, "{errors}");
         assert!(text.contains("\nG9 G1 X100 Y50 F"), "{text}");
     }
     // Where the next rapid follows it goes on into that, as before.
     let two = "G90 G71\nG0 X100 Y50\nG0 Z50\nM30\n";
-    let (code, text, errors) = shop("siemens", 600.0).limit(two, "");
+    let (code, text, errors) = Shop::straight("siemens", 600.0).limit(two, "");
     assert_eq!(code, 0, "{errors}");
     assert!(!text.contains("G9 "), "{text}");
 }
@@ -60,7 +58,7 @@ fn a_rapid_by_itself_stays_so() {
 #[test]
 fn stops_need_no_other_permission() {
     let program = "G21 G90 G64\nG1 X10. F20000.\nY10.\nM30\n";
-    let shop = shop("fanuc", 450.0);
+    let shop = Shop::straight("fanuc", 450.0);
     let (code, text, errors) = shop.limit(program, "--allow stop --report r.csv");
     assert_eq!(code, 0, "{errors}");
     assert_eq!(text, "G21 G90 G64\nG9 G1 X10. F20000.\nY10.\nM30\n");
@@ -83,7 +81,7 @@ fn each_control_has_its_own_word() {
         ("siemens", "G9"),
         ("isg", "G60"),
     ] {
-        let shop = shop(controller, 450.0);
+        let shop = Shop::straight(controller, 450.0);
         let program = "G90\nG1 X1000. F20000.\nY1000.\nM30\n";
         let options = "--allow feed,stop --strategy speed";
         let (code, text, errors) = shop.limit(program, options);
@@ -97,7 +95,8 @@ fn each_control_has_its_own_word() {
 /// becomes a feed and in its own; at 600 W both axes may run at F26404.
 #[test]
 fn rapids_between_two_words() {
-    let limited_to_600_w = |program: &str| shop("okuma", 600.0).limit(program, "--allow feed");
+    let limited_to_600_w =
+        |program: &str| Shop::straight("okuma", 600.0).limit(program, "--allow feed");
     let (code, text, errors) = limited_to_600_w(
         "G0 X1000. Y800.\nG1 X5. F500\nX8.\nG0 X0. Y0.\nG1 X3. F400\nG61 X2.\nG0 X1000. Y802.\n\
          G64\nM30\n",
@@ -181,7 +180,7 @@ fn axes_rest_where_the_tool_changes() {
 /// A control that stops at each block until G64 needs that there alone.
 #[test]
 fn rapids_after_g64() {
-    let shop = shop("iso", 600.0);
+    let shop = Shop::straight("iso", 600.0);
     let program = "G0 X1000. Y800.\nG64\nG1 X5. F500\nX8.\nG0 X1008. Y0.\nG1 X3. F400\nM30\n";
     let (code, text, errors) = shop.limit(program, "--allow feed");
     assert_eq!(code, 0, "{errors}");
@@ -206,7 +205,7 @@ fn a_control_without_the_word() {
         ),
         ("linuxcnc", "the planner of `linuxcnc` is modelled"),
     ] {
-        let shop = shop(controller, 450.0);
+        let shop = Shop::straight(controller, 450.0);
         let (code, with, errors) = shop.limit(program, "--allow feed,stop");
         assert_eq!(code, 0, "{controller}: {errors}");
         assert!(errors.contains("warning[no-stop-word]"), "{errors}");
@@ -230,7 +229,7 @@ fn where_no_stop_is_put() {
         (format!("G21 G90 G64\n{plain}M30\n"), "--start unknown"),
         (format!("G21 G90 G64\n{plain}M30\n"), "--certificate robust"),
     ] {
-        let shop = shop("fanuc", 450.0);
+        let shop = Shop::straight("fanuc", 450.0);
         shop.put("tools.tbl", "T1 P1 D4\n");
         let all = format!("--allow feed,stop {options}");
         let (_, text, errors) = shop.limit(&program, all.trim_end());
@@ -241,7 +240,7 @@ fn where_no_stop_is_put() {
 /// Feeds that mean something else stay as they are; a stop changes none.
 #[test]
 fn stops_among_feeds_of_another_meaning() {
-    let shop = shop("haas", 450.0);
+    let shop = Shop::straight("haas", 450.0);
     let program = "G21 G90 G64\nG93 G1 X1000. F20.\nY1000. F20.\nG94\nM30\n";
     let (code, text, errors) = shop.limit(program, "--allow feed,stop");
     assert_eq!(code, 0, "{errors}");
@@ -255,7 +254,7 @@ fn stops_among_feeds_of_another_meaning() {
 /// A line that runs several times has its stop each time.
 #[test]
 fn a_loop_has_the_stop_in_each_run() {
-    let shop = shop("fanuc", 450.0);
+    let shop = Shop::straight("fanuc", 450.0);
     let program = "G21 G90 G64\n#1=0\nWHILE [#1 LT 3] DO1\nG1 X1000. F20000.\nY1000.\nX0.\nY0.\n\
                    #1=#1+1\nEND1\nM30\n";
     let (code, text, errors) = shop.limit(program, "--allow feed,stop");
@@ -268,7 +267,7 @@ fn a_loop_has_the_stop_in_each_run() {
 /// The blocks of a modal macro call stay its blocks: the macro runs after each of them.
 #[test]
 fn a_modal_macro_call_goes_on() {
-    let shop = shop("fanuc", 450.0);
+    let shop = Shop::straight("fanuc", 450.0);
     let program = "G21 G90 G64\nG66 P1\nG1 X1000. F20000.\nY1000.\nG67\nM30\nO1\nG4 X1.\nM99\n";
     let (code, text, errors) = shop.limit(program, "--allow feed,stop");
     assert_eq!(code, 0, "{errors}");
@@ -310,7 +309,7 @@ proptest! {
     /// lower for the stops but where its block was not lowered before.
     #[test]
     fn stops_change_no_path(blocks in prop::collection::vec(block(), 2..14), power_w in 430.0..640.0_f64) {
-        let shop = shop("fanuc", power_w);
+        let shop = Shop::straight("fanuc", power_w);
         let program = format!("G21 G90 G64\nG1 X0. F20000.\n{}M30\n", blocks.concat());
         let without = shop.limit(&program, "--allow feed -o without.nc");
         let with = shop.limit(&program, "--allow feed,stop -o with.nc");

@@ -3,16 +3,7 @@
 use std::io::{self, Cursor};
 
 use super::{EXACT_STOP, RIG, Rig};
-use gwatt::pipeline::{
-    Allowed, Ideal, Law, LimitOptions, LimitSummary, Options, Strategy, ideal, limit,
-};
-
-const HOW: LimitOptions = LimitOptions {
-    strategy: Strategy::Optimal,
-    law: Law::Exact,
-    allowed: Allowed::NOTHING,
-    ..LimitOptions::USUAL
-};
+use gwatt::pipeline::{Ideal, LimitOptions, LimitSummary, Options, ideal, limit};
 
 fn found(rig: &Rig, how: LimitOptions, program: &str) -> (LimitSummary, Option<Ideal>) {
     let (machine, options) = (rig.machine(), Options::default());
@@ -31,7 +22,7 @@ const STOPS: Rig = Rig {
 /// 0.5 m/s, 0.4/0.5 + 0.5/4 = 0.925 s.
 #[test]
 fn the_best_pair_of_a_rapid() {
-    let (limited, ideal) = found(&STOPS, HOW, "G0 X400\nM2\n");
+    let (limited, ideal) = found(&STOPS, LimitOptions::USUAL, "G0 X400\nM2\n");
     assert!((limited.after.duration_s - 1.08).abs() < 1e-4);
     let ideal = ideal.expect("0.155 s less");
     assert!((ideal.duration_s - 0.925).abs() < 1e-4, "{ideal:?}");
@@ -44,14 +35,18 @@ fn the_best_pair_of_a_rapid() {
 #[test]
 fn little_is_not_said() {
     for program in ["G0 X40\nM2\n", "G1 X400 F6000\nM2\n"] {
-        assert_eq!(found(&STOPS, HOW, program).1, None, "{program}");
+        assert_eq!(
+            found(&STOPS, LimitOptions::USUAL, program).1,
+            None,
+            "{program}"
+        );
     }
 }
 
 /// A feed that may not be lowered would fit with less acceleration: 400/500 + 500/4000 s.
 #[test]
 fn what_is_refused_would_fit() {
-    let (limited, ideal) = found(&STOPS, HOW, "G1 X400 F30000\nM2\n");
+    let (limited, ideal) = found(&STOPS, LimitOptions::USUAL, "G1 X400 F30000\nM2\n");
     assert!(!limited.certified);
     assert!((ideal.expect("it fits").duration_s - 0.925).abs() < 1e-4);
     // Nothing helps against coolant.
@@ -59,7 +54,7 @@ fn what_is_refused_would_fit() {
         rest: "[path]\nmode = \"exact-stop\"\n[[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 1500",
         ..STOPS
     };
-    let (limited, ideal) = found(&coolant, HOW, "M8\nG1 X400 F30000\nM2\n");
+    let (limited, ideal) = found(&coolant, LimitOptions::USUAL, "M8\nG1 X400 F30000\nM2\n");
     assert!(!limited.certified);
     assert_eq!(ideal, None);
 }
@@ -72,7 +67,7 @@ fn pieces_where_there_is_a_word() {
         peak_w: 500.0,
         ..RIG
     };
-    let (limited, ideal) = found(&isg, HOW, "G0 X300\nM30\n");
+    let (limited, ideal) = found(&isg, LimitOptions::USUAL, "G0 X300\nM30\n");
     // One acceleration, 2 m/s²: 0.3/0.5 + 0.5/2 s. In pieces full force up to 0.2 m/s (0.04 s,
     // 4 mm), constant power up to 0.5 m/s (0.105 s, 39 mm), brakes (0.1 s, 25 mm), and 232 mm
     // at 0.5 m/s: 0.709 s.
@@ -93,7 +88,7 @@ fn what_the_profile_knows_is_named() {
         ..RIG
     };
     let program = "G21 G90 G61.1\nG0 X400\nG0 X0\nG0 X400\nM2\n";
-    let (_, ideal) = found(&linuxcnc, HOW, program);
+    let (_, ideal) = found(&linuxcnc, LimitOptions::USUAL, program);
     assert_eq!(
         ideal.expect("a gain").settings,
         [

@@ -1,10 +1,10 @@
 //! Words for the jerk, and for the largest speed of an axis: SINUMERIK's JERKLIM and VELOLIM,
 //! `TwinCAT` NC I's `#set paramAxisDynamics`.
 
-use std::io::Cursor;
-
 use super::{EXACT_STOP, RIG, Rig, options};
-use gwatt::pipeline::{Allowed, LimitOptions, LimitSummary, Strategy, limit};
+use gwatt::pipeline::{Allowed, LimitOptions, LimitSummary, Strategy};
+
+use crate::runs::{self, FEEDS};
 
 /// 500 kg at 0.5 m/s, 5 m/s² and 50 m/s³: 680 W where the acceleration falls, of 612.5 W.
 const SINUMERIK: Rig = Rig {
@@ -19,17 +19,13 @@ fn limited(rig: &Rig, strategy: Strategy, program: &str) -> (String, LimitSummar
     let how = LimitOptions {
         strategy,
         allowed: Allowed {
-            feed: true,
             unverified: true,
-            ..Allowed::NOTHING
+            ..FEEDS
         },
         ..LimitOptions::USUAL
     };
-    let (mut text, program) = (Vec::new(), Cursor::new(program.as_bytes()));
-    let options = options(RIG.options);
-    let summary = limit(program, &rig.machine(), &options, how, &mut text, None);
-    let text = String::from_utf8(text).expect("text");
-    (text, summary.expect("a program"))
+    let done = runs::limited(&rig.machine(), &options(RIG.options), how, program);
+    done.expect("a program")
 }
 
 fn fits(rig: &Rig, strategy: Strategy, program: &str) -> String {

@@ -5,17 +5,12 @@ use insta::assert_snapshot;
 
 use crate::shop::Shop;
 
-fn shop(controller: &str) -> Shop {
-    let rest = "[path]\nrapid = \"linear\"";
-    Shop::mill(controller, "peak_power_w = 600", rest, "")
-}
-
 /// The dwell that keeps a corner sharp stands after the number that the jump looks for.
 #[test]
 fn a_dwell_is_where_the_jump_leads() {
     let program = "G21 G90 G54\n#1=0\nN10 G0 X1000. Y800.\nG1 X990. F500.\n#1=#1+1\n\
                    IF [#1 LT 3] GOTO 10\nM30\n";
-    assert_snapshot!(shop("fanuc").limited(program, ""), @r"
+    assert_snapshot!(Shop::straight("fanuc", 600.0).limited(program, ""), @r"
     G21 G90 G54
     #1=0
     N10 G4 P1
@@ -28,7 +23,7 @@ fn a_dwell_is_where_the_jump_leads() {
     ");
     // Of subprograms that are called by a number too.
     let program = "G21 G90 G54\nM97 P100\nM30\nN100 G0 X1000. Y800.\nG1 X990. F500.\nM99\n";
-    assert_snapshot!(shop("haas").limited(program, ""), @r"
+    assert_snapshot!(Shop::straight("haas", 600.0).limited(program, ""), @r"
     G21 G90 G54
     M97 P100
     M30
@@ -45,7 +40,7 @@ fn a_dwell_is_where_the_jump_leads() {
 fn names_go_along() {
     let program = "G71 G90 G54 G64\nR1=0\nN5 LB1: G0 X=IC(1000) Y=IC(800)\nG1 X0 F500\nR1=R1+1\n\
                    IF R1<3 GOTOB LB1\nM30\n";
-    assert_snapshot!(shop("siemens").limited(program, "--allow unverified"), @r"
+    assert_snapshot!(Shop::straight("siemens", 600.0).limited(program, "--allow unverified"), @r"
     G71 G90 G54 G64
     R1=0
     N5 LB1: ACC[X]=57 ACC[Y]=57 ACC[Z]=57
@@ -70,7 +65,7 @@ fn marks_and_numbers_keep_their_order() {
         )
     };
     let third = |text: &str| text.lines().nth(2).unwrap().to_owned();
-    let shop_of = shop("fanuc");
+    let shop_of = Shop::straight("fanuc", 600.0);
     let number_first = shop_of.limited(&loops("N10 /G0 X1000. Y800."), "");
     assert_eq!(third(&number_first), "N10 /G4 P1", "{number_first}");
     let mark_first = shop_of.limited(&loops("/2 N10 G0 X1000. Y800."), "");
@@ -82,7 +77,7 @@ fn marks_and_numbers_keep_their_order() {
         "{text}"
     );
     let isg = "G71 G90\nP1=0\nN10: G0 X1000 Y800\nG1 X990 F500\nP1=P1+1\n$IF P1<3\n$GOTO N10\n$ENDIF\nM30\n";
-    let text = shop("isg").limited(isg, "");
+    let text = Shop::straight("isg", 600.0).limited(isg, "");
     assert!(text.contains("\nN10: G"), "{text}");
 }
 
@@ -91,7 +86,7 @@ fn marks_and_numbers_keep_their_order() {
 fn labels_stay_where_nothing_stands_before() {
     let program = "G21 G90 G61\n#1=0\nG1 X1. F500.\nN10 G0 X1000. Y800.\nN20 G1 X990. F500.\n\
                    #1=#1+1\nIF [#1 LT 3] GOTO 10\nM30\n";
-    assert_snapshot!(shop("fanuc").limited(program, ""), @r"
+    assert_snapshot!(Shop::straight("fanuc", 600.0).limited(program, ""), @r"
     G21 G90 G61
     #1=0
     G1 X1. F500.
@@ -109,7 +104,7 @@ fn labels_stay_where_nothing_stands_before() {
 fn a_dwell_calls_no_macro() {
     let program = "O6\nG21 G90 G54 G0 X0 Y0 Z50.\nG66 P9001 Z-5.\nX1000. Y800.\nG4 P100\nG67\n\
                    G0 X0 Y0\nM30\nO9001\nG91 G1 Z#26 F100\nG1 Z-#26\nG90\nM99\n";
-    let shop = shop("fanuc");
+    let shop = Shop::straight("fanuc", 600.0);
     shop.put("a.nc", program);
     let (_, out, _) = shop.run("moves a.nc");
     assert_eq!(out.matches("\"line\":10,").count(), 1, "{out}");

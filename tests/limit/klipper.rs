@@ -4,10 +4,11 @@ use std::fmt::Write as _;
 use std::io::Cursor;
 
 use gwatt::machine::Machine;
-use gwatt::pipeline::{
-    Allowed, Failure, Law, LimitOptions, LimitSummary, Options, Strategy, analyze, limit,
-};
+use gwatt::pipeline::{Allowed, Failure, LimitOptions, LimitSummary, Options, Strategy, analyze};
 use proptest::prelude::*;
+
+use crate::machines::{linear_axes, machine_from};
+use crate::runs::{limited, made_to_fit};
 
 /// From a place that is not known axes are held to the limit along the path, Z too: what is
 /// found for one acceleration must not hold it to a lower one.
@@ -21,7 +22,7 @@ fn accelerations_from_an_unknown_place_are_enough() {
                 coulomb_n = 12\nefficiency = 0.6\n\
                 [axes.Z]\nrapid_mm_min = 1200\naccel_mm_s2 = 500\nmass_kg = 60\n\
                 coulomb_n = 30\ngravity_n = 20\nefficiency = 0.5\n";
-    let machine = Machine::from_toml("test.toml", text).expect("a machine").0;
+    let machine = machine_from(text);
     let program = "G28\nG1 X50 Y50 Z5 F6000\nG28 X Y\nG1 X20 Y20 F6000\n";
     let (text, _) = fits(&machine, how(Strategy::Optimal, false), program);
     assert!(text.contains("\nG1 X50 Y50 Z5 F6000\n"), "{text}");
@@ -37,7 +38,7 @@ fn a_block_too_short_for_its_speed_fits_by_its_acceleration() {
                 [axes.X]\nrapid_mm_min = 30000\naccel_mm_s2 = 1000\nmass_kg = 10\n\
                 coulomb_n = 50\nreference_mm = 0\n\
                 [axes.Y]\nrapid_mm_min = 30000\naccel_mm_s2 = 1000\nmass_kg = 10\n";
-    let machine = Machine::from_toml("test.toml", text).expect("a machine").0;
+    let machine = machine_from(text);
     let program = "G1 X0 F600\nG1 X50 F12000\nG1 X0 F600\n";
     let (text, _) = fits(&machine, how(Strategy::Optimal, false), program);
     let expected = "G1 X0 F600\nSET_VELOCITY_LIMIT ACCEL=769\nG1 X50 F12000\n\
@@ -70,29 +71,19 @@ fn no_word_for_the_largest_speed_is_above_that_of_the_machine() {
 /// 10 kg by X and by Y, 200 mm/s and 1000 mm/s²: from rest to 200 mm/s along X takes
 /// 10·1·0.2 = 2 W.
 fn machine(peak_w: f64, rest: &str) -> Machine {
-    let mut text = format!(
+    let home = "reference_mm = 0";
+    machine_from(&format!(
         "schema = 1\nname = \"test\"\ncontroller = \"klipper\"\n{rest}\n\
-         [converter]\npeak_power_w = {peak_w:?}\n[limits]\nmargin = 0.0\n"
-    );
-    for (axis, rapid, accel, mass) in [
-        ("X", 12000, 1000, 10.0),
-        ("Y", 12000, 1000, 10.0),
-        ("Z", 600, 100, 1.0),
-        ("E", 3000, 1000, 0.1),
-    ] {
-        let _ = write!(
-            text,
-            "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = {rapid}\naccel_mm_s2 = {accel}\n\
-             mass_kg = {mass:?}\nreference_mm = 0\n"
-        );
-    }
-    Machine::from_toml("test.toml", &text).expect("a machine").0
+         [converter]\npeak_power_w = {peak_w:?}\n[limits]\nmargin = 0.0\n{}{}{}",
+        linear_axes("XY", [12000.0, 1000.0, 10.0], home),
+        linear_axes("Z", [600.0, 100.0, 1.0], home),
+        linear_axes("E", [3000.0, 1000.0, 0.1], home)
+    ))
 }
 
 fn how(strategy: Strategy, feed: bool) -> LimitOptions {
     LimitOptions {
         strategy,
-        law: Law::Exact,
         allowed: Allowed {
             feed,
             ..Allowed::NOTHING
@@ -106,17 +97,12 @@ fn run(
     how: LimitOptions,
     program: &str,
 ) -> Result<(String, LimitSummary), Failure> {
-    let mut text = Vec::new();
-    let input = Cursor::new(program.as_bytes());
-    let summary = limit(input, machine, &Options::default(), how, &mut text, None)?;
-    Ok((String::from_utf8(text).expect("text"), summary))
+    limited(machine, &Options::default(), how, program)
 }
 
 #[track_caller]
 fn fits(machine: &Machine, how: LimitOptions, program: &str) -> (String, LimitSummary) {
-    let (text, summary) = run(machine, how, program).expect("a program");
-    assert!(summary.certified, "{program}: {:?}", summary.reasons);
-    (text, summary)
+    made_to_fit(machine, &Options::default(), how, program)
 }
 
 #[track_caller]
@@ -210,7 +196,7 @@ fn unlike_axes_keep_their_words() {
         [converter]\npeak_power_w = 1\n[limits]\nmargin = 0.0\n\
         [axes.X]\nkind = \"linear\"\nrapid_mm_min = 12000\naccel_mm_s2 = 1000\nmass_kg = 10\n\
         [axes.Y]\nkind = \"linear\"\nrapid_mm_min = 6000\naccel_mm_s2 = 900\nmass_kg = 10\n";
-    let machine = Machine::from_toml("test.toml", text).expect("a machine").0;
+    let machine = machine_from(text);
     let found = refused(&machine, how(Strategy::Accel, false), "G1 X100 F12000\n");
     assert_eq!(
         found,

@@ -1,9 +1,10 @@
 //! Programs that are read as another control than the machine's own reads them.
 
-use std::io::Cursor;
-
 use gwatt::machine::{Machine, builtin_controller};
-use gwatt::pipeline::{Allowed, LimitOptions, LimitSummary, Options, Strategy, limit};
+use gwatt::pipeline::{LimitOptions, LimitSummary, Options, Strategy};
+
+use crate::machines::machine_from;
+use crate::runs::{self, WITH_FEEDS};
 
 /// 2500 W by X at full speed and force, which 1000 W are not enough for.
 fn machine(controller: &str, dialect: &str) -> Machine {
@@ -13,7 +14,7 @@ fn machine(controller: &str, dialect: &str) -> Machine {
          [axes.X]\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 1000\n\
          [axes.Y]\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 500\n"
     );
-    let mut machine = Machine::from_toml("test.toml", &text).expect("a machine").0;
+    let mut machine = machine_from(&text);
     machine.controller.language = builtin_controller(dialect).expect("a profile").language;
     machine
 }
@@ -21,19 +22,11 @@ fn machine(controller: &str, dialect: &str) -> Machine {
 fn limited(machine: &Machine, strategy: Strategy) -> Result<(String, LimitSummary), String> {
     let how = LimitOptions {
         strategy,
-        allowed: Allowed {
-            feed: true,
-            ..Allowed::NOTHING
-        },
-        ..LimitOptions::USUAL
+        ..WITH_FEEDS
     };
-    let (mut text, input) = (
-        Vec::new(),
-        Cursor::new("G21\nG90\nG1 X400 F30000\nG1 X0 F30000\n"),
-    );
-    let found = limit(input, machine, &Options::default(), how, &mut text, None);
-    let summary = found.map_err(|failure| failure.to_string())?;
-    Ok((String::from_utf8(text).expect("text"), summary))
+    let program = "G21\nG90\nG1 X400 F30000\nG1 X0 F30000\n";
+    let found = runs::limited(machine, &Options::default(), how, program);
+    found.map_err(|failure| failure.to_string())
 }
 
 /// Words that the dialect does not read are not written; feeds are.

@@ -8,17 +8,10 @@ use crate::shop::Shop;
 
 const READ: &str = "--tool-table tools.tbl --allow feed,expand";
 
-fn shop() -> Shop {
-    Shop::lathe("fanuc-lathe", 400.0, "")
-}
-
 /// What `limit` writes; the moves are those of the program before.
 #[track_caller]
 fn limited(shop: &Shop, program: &str) -> String {
-    shop.put("a.nc", program);
-    let (code, _, errors) = shop.run(&format!("limit a.nc {READ} -o out.nc"));
-    assert_eq!(code, 0, "{errors}");
-    let text = shop.get("out.nc");
+    let text = shop.written(program, READ);
     let [before, after] = ["a.nc", "out.nc"].map(|name| ends(shop, name));
     assert_eq!(before.len(), after.len(), "{text}");
     for (a, b) in before.iter().zip(&after) {
@@ -26,16 +19,6 @@ fn limited(shop: &Shop, program: &str) -> String {
         assert!(near, "{a:?} {b:?}\n{text}");
     }
     text
-}
-
-/// Why `limit` writes nothing.
-#[track_caller]
-fn refused(shop: &Shop, program: &str, options: &str) -> String {
-    shop.put("a.nc", program);
-    let (code, _, errors) = shop.run(&format!("limit a.nc {options} -o out.nc"));
-    assert_eq!(code, 1, "{errors}");
-    assert!(!shop.has("out.nc"));
-    errors
 }
 
 /// Ends of the moves that take time: X, Z, and the feed of cutting moves by the revolution.
@@ -59,7 +42,7 @@ fn stock_removal_and_finishing() {
                    N10 G0 X30. S600 (START)\nG1 Z-20. F0.12\nG2 X40. Z-25. R5.\n\
                    \n(STEP)\nG1 W-15.\nN20 U24. W-5.\nN25 G70 P10 Q20\nN30 G0 X150. Z100. M9\n\
                    N31 M30\n";
-    assert_snapshot!(limited(&shop(), program), @r"
+    assert_snapshot!(limited(&Shop::lathe("fanuc-lathe", 400.0, ""), program), @r"
     O1 (SHAFT)
     N1 G21 G40 G99 G54 T0300
     N2 G97 S500 M3
@@ -127,7 +110,7 @@ fn a_pattern_along_a_contour() {
     let program = "G21 G99 G54 T0300\nG97 S800 M3\nG0 X60. Z10.\nG1 X58. F0.5\n\
                    G73 U6. W3. R2\nG73 P100 Q200 U0.5 W0.1 F0.3\nN100 G0 X20. Z2.\nG1 Z-15.\n\
                    N200 X40. Z-40.\nX59.\nM30\n";
-    assert_snapshot!(limited(&shop(), program), @r"
+    assert_snapshot!(limited(&Shop::lathe("fanuc-lathe", 400.0, ""), program), @r"
     G21 G99 G54 T0300
     G97 S800 M3
     G98
@@ -171,7 +154,7 @@ fn cycles_of_one_block() {
     let program = "G21 G99 G54 T0300\nG97 S800 M3\nG0 X62. Z2.\nG90 X56. Z-80. F0.25\n\
                    X52. M8\nU-14. W-70. R-2.\nG0 X100. Z50.\nG94 X20. Z-2. F0.15\nZ-4.\n\
                    G0 X120. Z52.\nM30\n";
-    assert_snapshot!(limited(&shop(), program), @r"
+    assert_snapshot!(limited(&Shop::lathe("fanuc-lathe", 400.0, ""), program), @r"
     G21 G99 G54 T0300
     G97 S800 M3
     G98
@@ -237,7 +220,7 @@ fn cycles_of_one_block() {
 fn pecking() {
     let program = "G21 G98 G54 T0300\nG97 S900 M3\nG0 X0. Z4.\nG74 R1.\n\
                    G74 Z-80. Q60000 F90.\nG0 X40. Z-20.\nM30\n";
-    assert_snapshot!(limited(&shop(), program), @r"
+    assert_snapshot!(limited(&Shop::lathe("fanuc-lathe", 400.0, ""), program), @r"
     G21 G98 G54 T0300
     G97 S900 M3
     G4 P1
@@ -298,7 +281,8 @@ fn cycles_of_system_b() {
 fn what_is_not_written_out_is_said() {
     let stays = |program: &str, why: &str| {
         let begin = "G21 G99 G54 T0300\nG97 S500 M3\nG0 X64. Z3.\n";
-        let errors = refused(&shop(), &format!("{begin}{program}"), READ);
+        let errors =
+            Shop::lathe("fanuc-lathe", 400.0, "").refused(&format!("{begin}{program}"), READ);
         let note = format!("the turning cycle is not written out: {why}\n");
         assert!(errors.contains(&note), "{program}\n{errors}");
         assert_eq!(
@@ -343,7 +327,8 @@ fn what_is_not_written_out_is_said() {
     );
     // It needs permission.
     let program = "G21 G99 G54 T0300\nG97 S500 M3\nG0 X64. Z3.\nG90 X50. Z-80. F0.2\n";
-    let errors = refused(&shop(), program, "--tool-table tools.tbl --allow feed");
+    let errors = Shop::lathe("fanuc-lathe", 400.0, "")
+        .refused(program, "--tool-table tools.tbl --allow feed");
     let help =
         "--allow expand writes turning cycles out as single blocks, where they cut no thread";
     assert!(errors.contains(help), "{errors}");
@@ -358,16 +343,19 @@ fn a_contour_without_a_pocket_goes_as_in_type_one() {
     let program = format!("{begin}G71 P10 Q20 D8. R1. F0.3\n{contour}");
     let known = Shop::lathe("fanuc-lathe", 400.0, "[language]\ntype_2_as_type_1 = true");
     // The same passes as those of type I.
-    let one = limited(&shop(), &program.replace("N10 G0 X30. Z3.", "N10 G0 X30."));
+    let one = limited(
+        &Shop::lathe("fanuc-lathe", 400.0, ""),
+        &program.replace("N10 G0 X30. Z3.", "N10 G0 X30."),
+    );
     let two = limited(&known, &program);
     assert_eq!(two.replace(" Z3.)", ")"), one.replace(" Z3.)", ")"));
     // One with a pocket stays.
     let pocket = program.replace("G1 Z-60.", "G1 Z-20.\nX20. Z-40.\nX30. Z-60.");
     let unused = Shop::lathe("fanuc-lathe", 400.0, "[language]\ntype_2_as_type_1 = true");
-    let errors = refused(&unused, &pocket, READ);
+    let errors = unused.refused(&pocket, READ);
     assert!(errors.contains("(type II)"), "{errors}");
     // Why it stays is said once at its line, though many of its moves do not fit.
-    let errors = refused(&shop(), &program, READ);
+    let errors = Shop::lathe("fanuc-lathe", 400.0, "").refused(&program, READ);
     assert_eq!(errors.matches("error[untouchable]").count(), 1, "{errors}");
     let help = "= help: it is not written out as single blocks: the first block of the contour";
     assert!(errors.contains(help), "{errors}");
@@ -382,7 +370,7 @@ fn a_contour_without_a_pocket_goes_as_in_type_one() {
 fn returns_of_lathes() {
     let program = "G21 G98 G54\nT0101\nG0 X50. Z2.\nG1 Z-30. F120.\nG28 U20. W0. M5\nT0202\n\
                    G0 X50. Z2.\nG53 X0 Z0 M0\nT0200\nG0 X60.\nM30\n";
-    assert_snapshot!(limited(&shop(), program), @r"
+    assert_snapshot!(limited(&Shop::lathe("fanuc-lathe", 400.0, ""), program), @r"
     G21 G98 G54
     T0101
     G4 P1
@@ -407,17 +395,21 @@ fn returns_of_lathes() {
     ");
     let why = "the way to the reference point is not gone by a feed: the offsets of the lathe's \
                tool are not known: give them with --tool-table";
-    assert!(refused(&shop(), program, "--allow feed").contains(why));
+    assert!(
+        Shop::lathe("fanuc-lathe", 400.0, "")
+            .refused(program, "--allow feed")
+            .contains(why)
+    );
     let other = program.replace("T0202", "T0909");
-    let errors = refused(&shop(), &other, READ);
+    let errors = Shop::lathe("fanuc-lathe", 400.0, "").refused(&other, READ);
     assert!(errors.contains(why), "{errors}");
     let note = "note[no-tool-offset]: offsets of tools that the table does not have are taken as 0";
     assert!(errors.contains(note), "{errors}");
     // Neither where it leads may be guessed.
-    let shop = shop();
+    let shop = Shop::lathe("fanuc-lathe", 400.0, "");
     let machine = shop.get("mill.toml").replace("reference_mm = 0\n", "");
     shop.put("mill.toml", &machine);
-    let errors = refused(&shop, program, READ);
+    let errors = shop.refused(program, READ);
     let why = "where it leads is not known: give reference_mm of the axes in the machine file";
     assert!(errors.contains(why), "{errors}");
 }
@@ -491,7 +483,7 @@ fn drilling_cycles_that_stay() {
     ];
     for (cycle, why) in cases {
         let shop = Shop::lathe("fanuc-lathe", 300.0, "");
-        let errors = refused(&shop, &program(cycle), READ);
+        let errors = shop.refused(&program(cycle), READ);
         assert!(errors.contains(why), "{why}\n{errors}");
     }
 }

@@ -4,24 +4,15 @@
 
 use crate::shop::Shop;
 
-fn shop(controller: &str, power_w: f64) -> Shop {
-    let converter = format!("peak_power_w = {power_w}");
-    Shop::mill(controller, &converter, "[path]\nrapid = \"linear\"", "")
-}
-
 /// What is written, which fits.
 fn limited(controller: &str, power_w: f64, program: &str) -> String {
-    let shop = shop(controller, power_w);
-    shop.put("a.nc", program);
-    let (code, text, errors) = shop.run("limit a.nc --allow feed");
+    let (code, text, errors) = Shop::straight(controller, power_w).limit(program, "--allow feed");
     assert_eq!(code, 0, "{controller}: {errors}");
     text
 }
 
 fn refused(controller: &str, program: &str, reason: &str) {
-    let shop = shop(controller, 300.0);
-    shop.put("a.nc", program);
-    let (code, text, errors) = shop.run("limit a.nc --allow feed");
+    let (code, text, errors) = Shop::straight(controller, 300.0).limit(program, "--allow feed");
     assert_eq!((code, text.as_str()), (1, ""), "{program}");
     assert!(errors.contains(reason), "{program}: {errors}");
 }
@@ -117,7 +108,7 @@ fn feeds_that_differ_are_worked_out_again_in_each_language() {
             "G60 G1 X1000 FMIN[P1,13714.]\nG60 Z-10 FP1",
         ),
     ] {
-        let shop = shop(controller, power_w);
+        let shop = Shop::straight(controller, power_w);
         shop.put("a.nc", program);
         let (code, text, errors) = shop.run("limit a.nc --allow feed --strategy speed");
         assert_eq!(code, 0, "{controller}: {errors}");
@@ -172,7 +163,7 @@ fn what_the_program_works_out_is_held_below_a_value() {
     ] {
         assert_eq!(limited(controller, 300.0, program), written);
     }
-    let isg = shop("isg", 300.0);
+    let isg = Shop::straight("isg", 300.0);
     isg.put("a.nc", "P1=20000\nG60 G1 X1000 F=P1\nX0\nM30\n");
     let (code, text, errors) = isg.run("limit a.nc --allow feed --strategy speed");
     assert_eq!(code, 0, "{errors}");
@@ -195,7 +186,7 @@ fn slower_runs_keep_their_feed() {
         written,
         program.replace("X1000 F#1", "X1000 F[[#1+13714.-ABS[#1-13714.]]/2]")
     );
-    let shop = shop("linuxcnc", 300.0);
+    let shop = Shop::straight("linuxcnc", 300.0);
     shop.put("b.nc", &written);
     let (_, text, _) = shop.run("moves b.nc");
     for (feed, runs) in [(5000, 2), (10000, 2), (13714, 2), (2500, 1), (7500, 1)] {

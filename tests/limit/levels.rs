@@ -7,7 +7,9 @@ mod random;
 
 use super::{RIG, Rig};
 use gwatt::diagnostic::Severity;
-use gwatt::pipeline::{Allowed, Failure, LimitOptions, Options, Strategy, analyze, limit};
+use gwatt::pipeline::{Allowed, Failure, LimitOptions, Options, Strategy, analyze};
+
+use crate::runs::{FEEDS, made_to_fit};
 
 const HAAS: Rig = Rig {
     controller: "haas",
@@ -277,25 +279,14 @@ fn levels_without_a_document_need_a_permission() {
     );
     let how = LimitOptions {
         allowed: Allowed {
-            feed: true,
             unverified: true,
-            ..Allowed::NOTHING
+            ..FEEDS
         },
         ..LimitOptions::USUAL
     };
-    let mut text = Vec::new();
-    let summary = limit(
-        Cursor::new(program),
-        &FANUC.machine(),
-        &Options::default(),
-        how,
-        &mut text,
-        None,
-    )
-    .expect("a program");
-    assert!(summary.certified, "{:?}", summary.reasons);
+    let (text, _) = made_to_fit(&FANUC.machine(), &Options::default(), how, program);
     assert_eq!(
-        String::from_utf8(text).expect("text"),
+        text,
         "G5.1 Q1 R10\nG1 X400. F30000.\nG5.1 Q0\nX401. F100.\nM30\n"
     );
     let refused = FANUC.strategy(Strategy::Accel).limit(program.as_bytes());

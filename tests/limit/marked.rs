@@ -3,12 +3,11 @@
 
 mod again;
 
-use std::io::Cursor;
-
 use gwatt::machine::Machine;
-use gwatt::pipeline::{Failure, LimitOptions, LimitSummary, Options, RapidMark, Strategy, limit};
+use gwatt::pipeline::{Failure, LimitOptions, LimitSummary, Options, RapidMark, Strategy};
 
 use super::{RIG, Rig};
+use crate::runs::limited;
 
 /// Limits with the usual mark, and cutting feeds as they are.
 pub(super) fn marking(
@@ -21,10 +20,7 @@ pub(super) fn marking(
         rapid_mark: (!mark.is_empty()).then(|| RapidMark::new(mark).expect("a mark")),
         ..Options::default()
     };
-    let mut text = Vec::new();
-    let input = Cursor::new(program.as_bytes());
-    let summary = limit(input, machine, &options, how, &mut text, None)?;
-    Ok((String::from_utf8(text).expect("text"), summary))
+    limited(machine, &options, how, program)
 }
 
 /// A program that fits in the end.

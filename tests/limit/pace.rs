@@ -7,6 +7,8 @@ use proptest::prelude::*;
 use std::fmt::Write as _;
 use std::io::Cursor;
 
+use crate::machines::machine_from;
+
 const WIRED: &str = "[outputs]\nspeed = 1\nchange_s = 0.01";
 
 const HAL: Rig = Rig {
@@ -251,9 +253,7 @@ fn bench(peak_w: f64) -> Machine {
              coulomb_n = 200\nefficiency = 0.8\n"
         );
     }
-    Machine::from_toml("bench.toml", &text)
-        .expect("a machine")
-        .0
+    machine_from(&text)
 }
 
 /// The axes of a helix keep up with less than its whole speed in its plane: at half of the

@@ -7,17 +7,24 @@ use gwatt::pipeline::{
     Allowed, Law, LimitOptions, LimitSummary, Options, Strategy, analyze, limit,
 };
 
+use crate::machines::{linear_axes, machine_from};
+
 /// 20 kg by X and 30 kg by Y, 0.5 m/s and 3 m/s², with friction.
 fn machine(controller: &str, peak_w: f64) -> Machine {
-    let text = format!(
+    machine_from(&format!(
         "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n\
-         [converter]\npeak_power_w = {peak_w:?}\nbase_load_w = 20\n[limits]\nmargin = 0\n\
-         [axes.X]\nrapid_mm_min = 30000\naccel_mm_s2 = 3000\nmass_kg = 20\ncoulomb_n = 20\n\
-         efficiency = 0.8\n\
-         [axes.Y]\nrapid_mm_min = 30000\naccel_mm_s2 = 3000\nmass_kg = 30\ncoulomb_n = 30\n\
-         efficiency = 0.8\n"
-    );
-    Machine::from_toml("test.toml", &text).expect("a machine").0
+         [converter]\npeak_power_w = {peak_w:?}\nbase_load_w = 20\n[limits]\nmargin = 0\n{}{}",
+        linear_axes(
+            "X",
+            [30000.0, 3000.0, 20.0],
+            "coulomb_n = 20\nefficiency = 0.8"
+        ),
+        linear_axes(
+            "Y",
+            [30000.0, 3000.0, 30.0],
+            "coulomb_n = 30\nefficiency = 0.8"
+        )
+    ))
 }
 
 /// Half a millimetre a block, and an arc at the end.

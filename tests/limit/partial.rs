@@ -13,10 +13,7 @@ fn what_can_be_lowered_is_written_on_request() {
         "[path]\nrapid = \"linear\"",
         "",
     );
-    shop.put("a.nc", PROGRAM);
-    let (code, _, errors) = shop.run("limit a.nc -o out.nc");
-    assert_eq!(code, 1, "{errors}");
-    assert!(!shop.has("out.nc"));
+    shop.refused(PROGRAM, "");
     let (code, _, errors) = shop.run("limit a.nc --partial -o out.nc");
     assert_eq!(code, 1, "{errors}");
     // The ways down to R and back up are too fast for 400 W, and part of the cycle.

@@ -1,15 +1,13 @@
 //! `--always` and `--preset-else`: presets for moves that fit without them, and a speed where
 //! there is none.
 
-use std::io::Cursor;
-
 use gwatt::machine::Machine;
 use gwatt::pipeline::{
     Allowed, Certificate, Failure, Law, LimitOptions, LimitSummary, Options, PresetElse, Strategy,
-    limit,
 };
 
 use super::{RIG, Rig};
+use crate::runs::{FEEDS, limited};
 
 /// X and Y together go at 0.2 m/s each: along the line 16970.5 mm/min.
 const BOTH: &str = "[path]\nmode = \"exact-stop\"\nrapid = \"linear\"\n[[preset]]\n\
@@ -50,10 +48,7 @@ fn run(
         certificate: robust.then_some(Certificate::Robust),
         ..Options::default()
     };
-    let mut text = Vec::new();
-    let input = Cursor::new(program.as_bytes());
-    let summary = limit(input, machine, &options, how, &mut text, None)?;
-    Ok((String::from_utf8(text).expect("text"), summary))
+    limited(machine, &options, how, program)
 }
 
 /// What is written, and the notes with their lines.
@@ -109,10 +104,7 @@ fn feeds_above_a_preset_stay_without_permission() {
         ]
     );
     let with_feeds = LimitOptions {
-        allowed: Allowed {
-            feed: true,
-            ..Allowed::NOTHING
-        },
+        allowed: FEEDS,
         ..ALWAYS
     };
     let (text, notes) = fits(&rig(1e6), with_feeds, program);

@@ -8,6 +8,8 @@ use gwatt::pipeline::{Strategy as How, analyze};
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
+use crate::machines::{linear_axes, machine_from};
+
 /// One block of a random program; numbers in hundredths of the unit.
 #[derive(Debug, Clone)]
 enum Block {
@@ -165,23 +167,20 @@ prop_compose! {
 
 impl Drives {
     fn machine(&self, controller: &str) -> Machine {
-        let mut text = format!(
-            "schema = 1\nname = \"random\"\ncontroller = \"{controller}\"\n\
-             [converter]\npeak_power_w = {:?}\n[path]\nmode = \"exact-stop\"\n[limits]\nmargin = 0\n",
-            self.peak_w
-        );
-        for (n, letter) in ["X", "Y"].into_iter().enumerate() {
-            write!(
-                text,
-                "[axes.{letter}]\nkind = \"linear\"\nmass_kg = {:?}\ncoulomb_n = {:?}\n\
-                 rapid_mm_min = {:?}\naccel_mm_s2 = {:?}\n",
-                self.mass[n], self.coulomb[n], self.rapid_mm_min[n], self.accel[n]
+        let axis = |n: usize, letter| {
+            linear_axes(
+                letter,
+                [self.rapid_mm_min[n], self.accel[n], self.mass[n]],
+                &format!("coulomb_n = {:?}", self.coulomb[n]),
             )
-            .expect("memory");
-        }
-        Machine::from_toml("random.toml", &text)
-            .expect("a machine")
-            .0
+        };
+        machine_from(&format!(
+            "schema = 1\nname = \"random\"\ncontroller = \"{controller}\"\n[converter]\n\
+             peak_power_w = {:?}\n[path]\nmode = \"exact-stop\"\n[limits]\nmargin = 0\n{}{}",
+            self.peak_w,
+            axis(0, "X"),
+            axis(1, "Y")
+        ))
     }
 
     /// `J = Σ m u²`, `D = Σ Fc |u|` in SI, and the caps of speed and

@@ -4,7 +4,9 @@ use std::io::Cursor;
 
 use super::{EXACT_STOP, RIG, Rig, options};
 use gwatt::machine::Machine;
-use gwatt::pipeline::{Allowed, LimitOptions, LimitSummary, Strategy, analyze, limit};
+use gwatt::pipeline::{Allowed, LimitOptions, LimitSummary, Strategy, analyze};
+
+use crate::runs::{self, FEEDS};
 
 const SINUMERIK: Rig = Rig {
     controller: "siemens",
@@ -16,16 +18,12 @@ fn limited(machine: &Machine, unverified: bool, program: &str) -> (String, Limit
     let how = LimitOptions {
         strategy: Strategy::Speed,
         allowed: Allowed {
-            feed: true,
             unverified,
-            ..Allowed::NOTHING
+            ..FEEDS
         },
         ..LimitOptions::USUAL
     };
-    let (mut text, program) = (Vec::new(), Cursor::new(program.as_bytes()));
-    let options = options(RIG.options);
-    let summary = limit(program, machine, &options, how, &mut text, None).expect("a program");
-    (String::from_utf8(text).expect("text"), summary)
+    runs::limited(machine, &options(RIG.options), how, program).expect("a program")
 }
 
 /// The text of a program that was made to fit with the word.

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use insta::assert_snapshot;
 
-use crate::oracle::random::Random;
+use crate::random::Random;
 use crate::shop::Shop;
 
 /// Reference points in the corner of the working space, and the offsets of two systems.

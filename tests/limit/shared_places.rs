@@ -5,12 +5,6 @@ use insta::assert_snapshot;
 use super::same_moves::same_moves;
 use crate::shop::Shop;
 
-/// Rapids of one axis fit, those of two do not.
-pub(super) fn shop(controller: &str) -> Shop {
-    let converter = "peak_power_w = 600";
-    Shop::mill(controller, converter, "[path]\nrapid = \"linear\"", "")
-}
-
 /// What `limit` writes, which goes to the same places.
 #[track_caller]
 pub(super) fn limited(shop: &Shop, program: &str) -> String {
@@ -26,7 +20,7 @@ const TWO_CYCLES: &str = "O1\nG21 G90 G54\nG0 X0. Y0. Z50.\nG99 G81 Z-12. R40. F
 
 #[test]
 fn blocks_take_the_place_of_each_call() {
-    assert_snapshot!(limited(&shop("fanuc"), TWO_CYCLES), @r"
+    assert_snapshot!(limited(&Shop::straight("fanuc", 600.0), TWO_CYCLES), @r"
     O1
     G21 G90 G54
     G0 X0. Y0. Z50.
@@ -59,7 +53,7 @@ fn blocks_take_the_place_of_each_call() {
     let local = TWO_CYCLES
         .replace("M98 P100", "M97 P10")
         .replace("O100 (HOLES)\n", "");
-    assert_snapshot!(limited(&shop("haas"), &local), @r"
+    assert_snapshot!(limited(&Shop::straight("haas", 600.0), &local), @r"
     O1
     G21 G90 G54
     G0 X0. Y0. Z50.
@@ -91,7 +85,7 @@ fn blocks_take_the_place_of_each_call() {
 /// The file stays as it is, for other programs; only calls whose places are asked for change.
 #[test]
 fn places_may_stand_in_a_file() {
-    let shop = shop("fanuc");
+    let shop = Shop::straight("fanuc", 600.0);
     let (program, file) = TWO_CYCLES.split_once("O100").unwrap();
     shop.put("O100.nc", &format!("O100{file}"));
     assert_snapshot!(limited(&shop, program), @r"
@@ -128,7 +122,7 @@ fn a_subroutine_of_linuxcnc() {
     let program = "G21 G90 G64\no100 sub\nX400 Y300\nX0\no100 endsub\nG0 X0 Y0 Z50\n\
                    G99 G81 X0 Y0 Z-12 R40 F200\no100 call\nG80\n\
                    G99 G82 X0 Y300 Z-14 R40 P1\no100 call\nG80\nM2\n";
-    assert_snapshot!(limited(&shop("linuxcnc"), program), @r"
+    assert_snapshot!(limited(&Shop::straight("linuxcnc", 600.0), program), @r"
     G21 G90 G64
     o100 sub
     X400 Y300
@@ -168,7 +162,7 @@ fn a_section_of_sinumerik_that_is_repeated() {
                    N40 POS: X200 Y150\nN50 X10 Y20\nN60 ENDLABEL:\nN70 MCALL\nF100\n\
                    N80 MCALL CYCLE82(50,0,2,-12,,1)\nN90 REPEAT POS ; AGAIN\nN100 MCALL\n\
                    G0 Z100\nM30\n";
-    assert_snapshot!(limited(&shop("siemens"), program), @r"
+    assert_snapshot!(limited(&Shop::straight("siemens", 600.0), program), @r"
     G17 G54 G90 G60 F200
     G0 X0 Y0 Z50
     N30 ;MCALL CYCLE81(50,0,2,-10)
@@ -198,7 +192,7 @@ fn a_section_of_sinumerik_that_is_repeated() {
 /// Why the blocks cannot take the place of the calls.
 #[test]
 fn what_keeps_blocks_from_the_place_of_the_call() {
-    let shop = shop("fanuc");
+    let shop = Shop::straight("fanuc", 600.0);
     for (from, to, why) in [
         ("X0. (EDGE)", "X[#1] (EDGE)", "values that are worked out"),
         (

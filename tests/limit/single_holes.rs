@@ -4,7 +4,7 @@
 use insta::assert_snapshot;
 
 use super::same_moves::same_moves;
-use super::shared_places::{limited, shop};
+use super::shared_places::limited;
 use crate::shop::Shop;
 
 /// Any motion word ends rigid tapping: M29 comes again before each tap whose way is gone by
@@ -14,7 +14,7 @@ fn rigid_taps_are_announced_again() {
     let program = "G21 G90 G54\nG0 X0. Y0. Z50.\nN10 M29 S500\nN20 G99 G84 X400. Y300. Z-8. R40. F500.\n\
                    X410.\nN30 X0. Y0. (LAST)\nG80\nM29 S300\nG84 Z-8. R40. F300. K0\nX400. Y300.\n\
                    G80 G0 Z50.\nM30\n";
-    assert_snapshot!(limited(&shop("fanuc"), program), @r"
+    assert_snapshot!(limited(&Shop::straight("fanuc", 600.0), program), @r"
     G21 G90 G54
     G0 X0. Y0. Z50.
     G9 G1 X400. Y300. F26966.
@@ -69,7 +69,7 @@ fn no_rigid_tap_becomes_another() {
 fn a_hole_that_may_be_skipped() {
     let program = "G21 G90 G54\nG0 X0. Y0. Z50.\nG99 G81 X10. Z-12. R40. F200.\n\
                    /2 X400. Y300.\nX20. Y10.\nG80 G0 Z50.\nM30\n";
-    assert_snapshot!(limited(&shop("fanuc"), program), @r"
+    assert_snapshot!(limited(&Shop::straight("fanuc", 600.0), program), @r"
     G21 G90 G54
     G0 X0. Y0. Z50.
     G0 X10.
@@ -92,7 +92,7 @@ fn a_hole_that_may_be_skipped() {
 fn a_hole_that_stays_keeps_the_others_from_nothing() {
     let program = "G21 G90 G54\nG0 X0. Y0. Z50.\nG98 G81 X400. Y300. Z-12. R40. F200.\n\
                    X420. K2\nX0. Y0.\nG80\nM30\n";
-    assert_snapshot!(limited(&shop("fanuc"), program), @r"
+    assert_snapshot!(limited(&Shop::straight("fanuc", 600.0), program), @r"
     G21 G90 G54
     G0 X0. Y0. Z50.
     G9 G1 X400. Y300. F26966.

@@ -10,9 +10,9 @@ mod refused;
 use super::{RIG, Rig, Run};
 use crate::rows::Rows;
 use gwatt::machine::Machine;
-use gwatt::pipeline::{
-    Allowed, Certificate, Law, LimitOptions, Options, Row, Strategy, analyze, limit,
-};
+use gwatt::pipeline::{Allowed, Certificate, Law, LimitOptions, Options, Row, Strategy, limit};
+
+use crate::runs::{made_to_fit, rows_of};
 
 const ISG: Rig = Rig {
     controller: "isg",
@@ -42,21 +42,10 @@ fn limited(machine: &Machine, how: LimitOptions, program: &str) -> (String, Vec<
     (String::from_utf8(text).expect("text"), rows.0)
 }
 
-fn reported(machine: &Machine, program: &str) -> Vec<Row> {
-    let mut rows = Rows::default();
-    let input = std::io::Cursor::new(program.as_bytes());
-    analyze(input, machine, &Options::default(), Some(&mut rows)).expect("a program");
-    rows.0
-}
-
 /// The notes of a program that fits in the end.
 #[track_caller]
 fn notes(machine: &Machine, how: LimitOptions, program: &str) -> Vec<String> {
-    let mut text = Vec::new();
-    let input = std::io::Cursor::new(program.as_bytes());
-    let summary = limit(input, machine, &Options::default(), how, &mut text, None);
-    let summary = summary.expect("a program");
-    assert!(summary.certified, "{program}: {:?}", summary.reasons);
+    let (_, summary) = made_to_fit(machine, &Options::default(), how, program);
     let notes = summary.before.notes.into_iter();
     let about = notes.filter(|note| note.rule == "not-split");
     about.map(|note| note.message).collect()
@@ -110,7 +99,7 @@ fn pieces_come_near_the_physical_limit() {
     // a = P/(m·v) at 0.5 m/s.
     assert!((49.5..=50.0).contains(values.last().unwrap()), "{values:?}");
     // Read by itself it is what was certified.
-    let read = reported(&rig.machine(), &text);
+    let read = rows_of(&rig.machine(), &text);
     assert_eq!(read.len(), places.len() + 1);
     assert!(
         read.iter()

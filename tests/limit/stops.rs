@@ -5,18 +5,7 @@ use crate::shop::Shop;
 
 /// What `limit` writes on a mill with linear rapids.
 fn limited(controller: &str, program: &str) -> String {
-    let shop = Shop::mill(
-        controller,
-        "peak_power_w = 600",
-        "[path]\nrapid = \"linear\"",
-        "",
-    );
-    shop.put("a.nc", program);
-    let (code, _, errors) = shop.run("limit a.nc -o out.nc");
-    assert_eq!(code, 0, "{controller}: {errors}");
-    let (code, _, errors) = shop.run("check out.nc");
-    assert_eq!(code, 0, "{controller}: {errors}");
-    shop.get("out.nc")
+    Shop::straight(controller, 600.0).limited(program, "")
 }
 
 /// X moves 410 mm, Y 300: together they draw (0.5·(200·3 + 100) + 0.366·(200·2.195 +
@@ -55,10 +44,7 @@ fn a_lathe_in_feed_per_minute() {
         "[path]\nrapid = \"linear\"",
         "",
     );
-    shop.put("a.nc", "G98 G21\nG1 X-20. F500\nG0 X400. Z300.\nM30\n");
-    let (code, _, errors) = shop.run("limit a.nc -o out.nc");
-    assert_eq!(code, 0, "{errors}");
-    let text = shop.get("out.nc");
+    let text = shop.written("G98 G21\nG1 X-20. F500\nG0 X400. Z300.\nM30\n", "");
     assert!(text.contains("G4 P1\nG9 G1 X400. Z300. F"), "{text}");
 }
 
@@ -73,13 +59,7 @@ fn a_rapid_among_feeds_per_revolution() {
         ("linuxcnc", ["G94", "G95"], "G4 P0\n", ["", "G4 P0\n"]),
     ] {
         let shop = Shop::mill(controller, converter, "[path]\nrapid = \"linear\"", "");
-        shop.put(
-            "a.nc",
-            &format!("{revolution} G21\nM3 S500\nG1 X-20. F.2\nG0 X400. Z300.\nG1 X401.\nX402. F.1\nM30\n"),
-        );
-        let (code, _, errors) = shop.run("limit a.nc -o out.nc");
-        assert_eq!(code, 0, "{controller}: {errors}");
-        let text = shop.get("out.nc");
+        let text = shop.written(&format!("{revolution} G21\nM3 S500\nG1 X-20. F.2\nG0 X400. Z300.\nG1 X401.\nX402. F.1\nM30\n"), "");
         let before = format!("F.2\n{minute}\n{dwell}{stop}G1 X400. Z300. F");
         assert!(text.contains(&before), "{controller}: {text}");
         let after = format!("\n{dwell_after}G0 {revolution} F.2\nG1 X401.\nX402. F.1\nM30\n");

@@ -2,12 +2,13 @@
 //! knobs at any lower override.
 
 use std::fmt::Write as _;
-use std::io::Cursor;
 
-use gwatt::machine::{Machine, OverrideAt};
-use gwatt::pipeline::{Allowed, LimitOptions, Options, Summary, analyze, limit};
+use gwatt::machine::Machine;
+use gwatt::pipeline::{Allowed, LimitOptions, Options};
 
-use crate::oracle::random::Random;
+use crate::machines::machine_from;
+use crate::random::Random;
+use crate::runs::{self, summary_of, turned};
 
 /// Settings of both knobs, as shares of the largest.
 const SHARES: [f64; 11] = [
@@ -33,7 +34,7 @@ fn machine(seed: u64, controller: &str, path: &str, ratings: &str) -> Machine {
             random.within(0.6, 0.95),
         );
     }
-    Machine::from_toml("test.toml", &text).expect("a machine").0
+    machine_from(&text)
 }
 
 /// Feeds, with rapids between in pairs.
@@ -56,36 +57,23 @@ fn program(random: &mut Random) -> String {
     text + "M30\n"
 }
 
-fn check(machine: &Machine, program: &str) -> Summary {
-    let input = Cursor::new(program.as_bytes());
-    analyze(input, machine, &Options::default(), None).expect("a program")
-}
-
 /// What is written, if it is certified.
 fn limited(machine: &Machine, program: &str, allowed: Allowed) -> Option<String> {
     let how = LimitOptions {
         allowed,
         ..LimitOptions::USUAL
     };
-    let (mut out, input) = (Vec::new(), Cursor::new(program.as_bytes()));
-    let summary = limit(input, machine, &Options::default(), how, &mut out, None);
-    let summary = summary.expect("a program");
-    summary
-        .certified
-        .then(|| String::from_utf8(out).expect("text"))
+    let done = runs::limited(machine, &Options::default(), how, program);
+    let (text, summary) = done.expect("a program");
+    summary.certified.then_some(text)
 }
 
 /// Whether a program fits wherever the knobs stand.
 fn holds(machine: &Machine, program: &str) {
     for feed in SHARES {
         for rapid in [feed, 1.0, 0.3] {
-            let mut turned = machine.clone();
-            turned.limits.override_at = Some(OverrideAt {
-                feed: feed * machine.limits.feed_override_max,
-                rapid,
-                spindle: 1.0,
-            });
-            let found = check(&turned, program);
+            let knobs = [feed * machine.limits.feed_override_max, rapid, 1.0];
+            let found = summary_of(&turned(machine, knobs), program);
             assert!(
                 found.fits(),
                 "feed {feed}, rapid {rapid}: {:?} {:?}\n{program}",
@@ -112,7 +100,7 @@ fn stops(seed: u64, programs: usize) -> usize {
         let path = "rapid = \"linear\"";
         let free = machine(seed, controller, path, "peak_power_w = 1e6");
         let text = program(&mut random);
-        let peak_w = check(&free, &text).peak_w * random.within(0.3, 0.95);
+        let peak_w = summary_of(&free, &text).peak_w * random.within(0.3, 0.95);
         let ratings = format!("peak_power_w = {:.1}", peak_w.max(60.0));
         let limited_to = machine(seed, controller, path, &ratings);
         let allowed = Allowed {
@@ -140,7 +128,7 @@ fn pauses(seed: u64, programs: usize) -> usize {
                     brake_power_w = 5\nbrake_energy_j = 1e9";
         let free = machine(seed, controller, path, open);
         let text = program(&mut random);
-        let used = check(&free, &text).over_time;
+        let used = summary_of(&free, &text).over_time;
         let share = random.within(0.6, 0.98);
         let [mean_w, energy_j] = if random.once_in(2) {
             [used[0].rating.value * share, 1e9]

@@ -7,8 +7,10 @@ use std::io::Cursor;
 use super::reader::read;
 use super::{EXACT_STOP, RIG, Rig, options};
 use gwatt::interpret::{BlockDelete, ProbeResult, ProbeWay};
-use gwatt::pipeline::{Allowed, LimitOptions, LimitSummary, Options, analyze, limit};
+use gwatt::pipeline::{LimitOptions, LimitSummary, Options, analyze};
 use proptest::prelude::*;
+
+use crate::runs::{self, WITH_FEEDS};
 
 /// The program as a control reads it with these switches on.
 fn with_switches(program: &str, on: &[&str]) -> String {
@@ -183,25 +185,9 @@ fn limited(program: &str) -> (String, LimitSummary) {
     let how = LimitOptions {
         strategy: MILL.options.strategy,
         law: MILL.options.law,
-        allowed: Allowed {
-            feed: true,
-            ..Allowed::NOTHING
-        },
-        ..LimitOptions::USUAL
+        ..WITH_FEEDS
     };
-    let mut text = Vec::new();
-    let summary = limit(
-        Cursor::new(program),
-        &MILL.machine(),
-        &probing(),
-        how,
-        &mut text,
-        None,
-    );
-    (
-        String::from_utf8(text).expect("text"),
-        summary.expect("a program"),
-    )
+    runs::limited(&MILL.machine(), &probing(), how, program).expect("a program")
 }
 
 /// On the first way X alone runs, on the second X and Y at once, on the third Y.

@@ -7,8 +7,7 @@ use proptest::prelude::*;
 use crate::shop::Shop;
 
 fn shop(controller: &str, power_w: f64) -> Shop {
-    let converter = format!("peak_power_w = {power_w}");
-    let shop = Shop::mill(controller, &converter, "[path]\nrapid = \"linear\"", "");
+    let shop = Shop::straight(controller, power_w);
     shop.put("tools.tbl", "T1 P1 D8\nT2 P2 D4\n");
     shop
 }

@@ -6,10 +6,11 @@ use std::io::Cursor;
 
 use super::{EXACT_STOP, RIG, Rig, options};
 use gwatt::machine::Machine;
-use gwatt::pipeline::{
-    Allowed, Failure, LimitOptions, LimitSummary, Strategy as How, analyze, limit,
-};
+use gwatt::pipeline::{Allowed, Failure, LimitOptions, LimitSummary, Strategy as How, analyze};
 use proptest::prelude::*;
+
+use crate::machines::{linear_axes, machine_from};
+use crate::runs;
 
 const SINUMERIK: Rig = Rig {
     controller: "siemens",
@@ -34,17 +35,7 @@ fn limited(
         allowed,
         ..LimitOptions::USUAL
     };
-    let mut text = Vec::new();
-    let program = Cursor::new(program.as_bytes());
-    let summary = limit(
-        program,
-        machine,
-        &options(RIG.options),
-        how,
-        &mut text,
-        None,
-    )?;
-    Ok((String::from_utf8(text).expect("text"), summary))
+    runs::limited(machine, &options(RIG.options), how, program)
 }
 
 /// The text of a program that was made to fit with the word.
@@ -253,26 +244,20 @@ prop_compose! {
 impl Drives {
     fn machine(&self) -> Machine {
         let mode = if self.exact { EXACT_STOP } else { "" };
-        let mut text = format!(
-            "schema = 1\nname = \"random\"\ncontroller = \"siemens\"\n[converter]\n\
-             peak_power_w = {:?}\n{mode}\n[limits]\nmargin = 0\n",
-            self.peak_w
-        );
-        for (n, letter) in ["X", "Y"].into_iter().enumerate() {
-            write!(
-                text,
-                "[axes.{letter}]\nkind = \"linear\"\nmass_kg = {:?}\ncoulomb_n = {:?}\n\
-                 rapid_mm_min = {:?}\naccel_mm_s2 = {:?}\n",
-                self.mass[n],
-                self.coulomb[n],
-                self.speed[n] * 6e4,
-                self.accel[n] * 1e3
+        let axis = |n: usize, letter| {
+            linear_axes(
+                letter,
+                [self.speed[n] * 6e4, self.accel[n] * 1e3, self.mass[n]],
+                &format!("coulomb_n = {:?}", self.coulomb[n]),
             )
-            .expect("memory");
-        }
-        Machine::from_toml("random.toml", &text)
-            .expect("a machine")
-            .0
+        };
+        machine_from(&format!(
+            "schema = 1\nname = \"random\"\ncontroller = \"siemens\"\n[converter]\n\
+             peak_power_w = {:?}\n{mode}\n[limits]\nmargin = 0\n{}{}",
+            self.peak_w,
+            axis(0, "X"),
+            axis(1, "Y")
+        ))
     }
 }
 

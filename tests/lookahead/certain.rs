@@ -7,23 +7,13 @@ use gwatt::machine::Machine;
 use gwatt::pipeline::{Certificate, Options, Row, analyze, moves};
 use gwatt::power::{Assessment, Assessor, Want};
 
+use crate::machines::machine_from;
 use crate::rows::Rows;
+use crate::runs::rows_of;
 
 fn rows(program: &str) -> Vec<Row> {
     let (machine, _) = Machine::load("linuxcnc-mill").expect("an embedded machine");
-    rows_on(&machine, program)
-}
-
-fn rows_on(machine: &Machine, program: &str) -> Vec<Row> {
-    let mut rows = Rows::default();
-    analyze(
-        Cursor::new(program),
-        machine,
-        &Options::default(),
-        Some(&mut rows),
-    )
-    .expect("a program");
-    rows.0
+    rows_of(&machine, program)
 }
 
 /// The joint of line and small arc is a parabolic blend, which is not modelled with
@@ -33,8 +23,8 @@ fn behind_a_stop_nothing_is_left_of_what_is_not_certain() {
     let program = "G21 G90 G17 G94 G64\nG0 X0 Y0 Z5\nG1 X20 F1200\nX40 Z0\nG3 Y0.4 J0.2\n";
     let text = include_str!("../../machine-configs/linuxcnc-mill.toml");
     let text = text.replace("\naccel_mm_s2", "\njerk_mm_s3 = 50000\naccel_mm_s2");
-    let (machine, _) = Machine::from_toml("mill.toml", &text).expect("a machine");
-    let before = |stop: &str| rows_on(&machine, &format!("{program}{stop}G0 Z30\nX0\nM2\n"));
+    let machine = machine_from(&text);
+    let before = |stop: &str| rows_of(&machine, &format!("{program}{stop}G0 Z30\nX0\nM2\n"));
     let (moving, dwelling) = (before(""), before("G4 P1\n"));
     let certificates: Vec<_> = moving.iter().map(|row| row.certificate).collect();
     let [robust, planned] = [Certificate::Robust, Certificate::Planned];

@@ -7,21 +7,19 @@ use gwatt::machine::{AXES, AxisSet, ChordRule, Machine, PathMode};
 use gwatt::plan::Overrides;
 use gwatt::plan::lookahead::{Curve, Element, Piece, Planned, chord_count};
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::fmt::Write as _;
+
+use crate::machines::{linear_axes, machine_from};
 
 /// A machine of these speeds (mm/s), with axes that speed up by so much (mm/s²).
 fn machine(controller: &str, speeds_mm_s: [f64; 3], accel_mm_s2: f64) -> Machine {
-    let mut text = format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\npeak_power_w = 1e9\n"
-    );
-    for (axis, speed) in ["X", "Y", "Z"].into_iter().zip(speeds_mm_s) {
-        let _ = write!(
-            text,
-            "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = {:?}\naccel_mm_s2 = {accel_mm_s2:?}\nmass_kg = 100\n",
-            speed * 60.0
-        );
-    }
-    Machine::from_toml("test.toml", &text).expect("a machine").0
+    let [x, y, z] = speeds_mm_s.map(|speed| [speed * 60.0, accel_mm_s2, 100.0]);
+    machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\n\
+         peak_power_w = 1e9\n{}{}{}",
+        linear_axes("X", x, ""),
+        linear_axes("Y", y, ""),
+        linear_axes("Z", z, "")
+    ))
 }
 
 /// A quarter of a circle of 10 mm, from X0 Y0 to X-10 Y10, that rises.

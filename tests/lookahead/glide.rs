@@ -9,6 +9,7 @@ use gwatt::syntax::{Block, scan_line};
 use proptest::prelude::*;
 
 use super::machine;
+use crate::machines::machine_from;
 
 /// What is known of each move, in order. Peaks up to the floor are of no interest.
 pub(super) fn judged(
@@ -141,7 +142,7 @@ fn printers() -> [Machine; 3] {
                 speed * 60
             );
         }
-        Machine::from_toml("test.toml", &text).expect("a machine").0
+        machine_from(&text)
     })
 }
 

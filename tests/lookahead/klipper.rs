@@ -5,13 +5,12 @@
 //! most `2·(1 − r)·a_max·L`, r the minimum cruise ratio.
 
 use std::fmt::Write as _;
-use std::io::Cursor;
 
-use gwatt::machine::Machine;
-use gwatt::pipeline::{Certificate, Options, Row, analyze};
+use gwatt::pipeline::{Certificate, Row};
 use proptest::prelude::*;
 
-use crate::rows::Rows;
+use crate::machines::{linear_axes, machine_from};
+use crate::runs::rows_of;
 
 const ACCEL: f64 = 3000.0;
 const CORNER: f64 = 5.0;
@@ -25,26 +24,16 @@ const E: [f64; 2] = [50.0, 1500.0];
 type Asked = ([f64; 4], f64);
 
 fn rows(program: &str) -> Vec<Row> {
-    let mut text = "schema = 1\nname = \"test\"\ncontroller = \"klipper\"\n\
-         [converter]\npeak_power_w = 1e6\n"
-        .to_owned();
-    for (axis, [speed, accel]) in [
-        ("X", [300.0, ACCEL]),
-        ("Y", [300.0, ACCEL]),
-        ("Z", Z),
-        ("E", E),
-    ] {
-        let _ = write!(
-            text,
-            "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = {:?}\naccel_mm_s2 = {accel:?}\nmass_kg = 1\n",
-            speed * 60.0
-        );
-    }
-    let machine = Machine::from_toml("test.toml", &text).expect("a machine").0;
-    let mut rows = Rows::default();
-    let input = Cursor::new(program.as_bytes());
-    analyze(input, &machine, &Options::default(), Some(&mut rows)).expect("a program");
-    rows.0
+    let axis =
+        |letters, [speed, accel]: [f64; 2]| linear_axes(letters, [speed * 60.0, accel, 1.0], "");
+    let machine = machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"klipper\"\n[converter]\n\
+         peak_power_w = 1e6\n{}{}{}",
+        axis("XY", [300.0, ACCEL]),
+        axis("Z", Z),
+        axis("E", E)
+    ));
+    rows_of(&machine, program)
 }
 
 struct Ruled {

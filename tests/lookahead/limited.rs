@@ -7,28 +7,19 @@
 use super::recorder::{AxisLimits, is_installed, record_with};
 use super::side_by_side::{Any, Random, program, recorded};
 use gwatt::machine::{Machine, builtin};
-use gwatt::pipeline::{
-    Allowed, Law, LimitOptions, LimitSummary, Options, Strategy, analyze, limit,
-};
+use gwatt::pipeline::{LimitSummary, Options, analyze, limit};
 use std::fmt::Write as _;
 use std::io::Cursor;
 use std::path::Path;
+
+use crate::machines::machine_from;
+use crate::runs::WITH_FEEDS;
 
 const SHARES: [f64; 4] = [0.6, 0.7, 0.8, 0.9];
 /// What LinuxCNC's task may hold a program up at each word for which it waits, s.
 const WAIT_S: f64 = 0.03;
 /// Programs of others that take longer are left out, s.
 const LONGEST_S: f64 = 60.0;
-
-const HOW: LimitOptions = LimitOptions {
-    strategy: Strategy::Optimal,
-    law: Law::Exact,
-    allowed: Allowed {
-        feed: true,
-        ..Allowed::NOTHING
-    },
-    ..LimitOptions::USUAL
-};
 
 /// What is asked of a program, and what it was planned to come to.
 struct Job {
@@ -45,7 +36,7 @@ fn machine(letters: &str, axes: &[Any], peak_w: f64, rest: &str) -> Machine {
         "schema = 1\nname = \"{letters}\"\ncontroller = \"linuxcnc\"\n\
          [converter]\npeak_power_w = {peak_w:?}\n[limits]\nmargin = 0.0\n{tables}{rest}"
     );
-    Machine::from_toml("test.toml", &text).expect("a machine").0
+    machine_from(&text)
 }
 
 /// A program that is written for a share of its own largest peak; nothing where it is
@@ -62,7 +53,7 @@ fn limited(program: &str, of: (&str, &[Any], &str), share: f64) -> Option<(Job, 
     let limit_w = share * before.peak_w;
     let small = machine(letters, axes, limit_w, rest);
     let mut text = Vec::new();
-    let summary = limit(input(), &small, &options, HOW, &mut text, None).ok()?;
+    let summary = limit(input(), &small, &options, WITH_FEEDS, &mut text, None).ok()?;
     if !summary.certified || summary.edited_lines == 0 {
         return None;
     }

@@ -5,19 +5,16 @@ use gwatt::pipeline::Certificate;
 use gwatt::plan::lookahead::{Blend, Piece, Planned};
 use std::fmt::Write as _;
 
+use super::corners::assert_close;
+use crate::machines::{linear_axes, machine_from};
+use crate::runs::rows_of;
+
 /// Two blends: F is low between them.
 const SLOWER_BEHIND_A_BLEND: &str =
     "G64 P0.05\nG1 X40 F9000\nG1 X50 Y1.8 F600\nG1 X60 Y1.8 F9000\nM2\n";
 
 fn planned(program: &str) -> Run {
     plan_program(&machine("linuxcnc", 200.0, 1000.0), program.as_bytes())
-}
-
-fn assert_close(value: f64, expected: f64) {
-    assert!(
-        (value - expected).abs() <= 1e-9 * expected.abs(),
-        "{value}, not {expected}"
-    );
 }
 
 fn only_blend(pieces: &[Planned<u64>]) -> (&Planned<u64>, Blend) {
@@ -302,27 +299,15 @@ fn a_lower_feed_behind_a_blend_is_seen_too_late() {
 
 /// Limits of 200 mm/s and 2000 mm/s², friction of `coulomb_n` in each axis, no margin.
 fn rig(masses_kg: [u32; 3], coulomb_n: u32, rest: &str) -> gwatt::machine::Machine {
-    let mut text = "schema = 1\nname = \"test\"\ncontroller = \"linuxcnc\"\n[limits]\nmargin = 0\n\
-         [converter]\npeak_power_w = 1e6\nregen_power_w = 1e6\n"
-        .to_owned();
-    for (axis, mass_kg) in ["X", "Y", "Z"].into_iter().zip(masses_kg) {
-        let _ = write!(
-            text,
-            "[axes.{axis}]\nrapid_mm_min = 12000\naccel_mm_s2 = 2000\nmass_kg = {mass_kg}\n\
-             coulomb_n = {coulomb_n}\n{rest}"
-        );
-    }
-    gwatt::machine::Machine::from_toml("m.toml", &text)
-        .unwrap()
-        .0
-}
-
-fn rows(machine: &gwatt::machine::Machine, program: &str) -> Vec<gwatt::pipeline::Row> {
-    let mut rows = crate::rows::Rows::default();
-    let input = std::io::Cursor::new(program);
-    let options = gwatt::pipeline::Options::default();
-    gwatt::pipeline::analyze(input, machine, &options, Some(&mut rows)).unwrap();
-    rows.0
+    let more = format!("coulomb_n = {coulomb_n}\n{rest}");
+    let axis = |letter, mass_kg| linear_axes(letter, [12000.0, 2000.0, f64::from(mass_kg)], &more);
+    machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"linuxcnc\"\n[limits]\nmargin = 0\n\
+         [converter]\npeak_power_w = 1e6\nregen_power_w = 1e6\n{}{}{}",
+        axis("X", masses_kg[0]),
+        axis("Y", masses_kg[1]),
+        axis("Z", masses_kg[2])
+    ))
 }
 
 /// Y 150 kg on an arc of 100 mm, then lines of 0.3 mm and a long one; recorded were 42.75 W at
@@ -340,7 +325,7 @@ fn runs_of_short_lines_are_slowed_down() {
             let _ = writeln!(program, "G1 Y{:.3}", 100.0 + step_mm * f64::from(number));
         }
         program.push_str("G1 Y182.1\nM2\n");
-        let rows = rows(&machine, &program);
+        let rows = rows_of(&machine, &program);
         let planned = |row: &gwatt::pipeline::Row| row.certificate == Certificate::Planned;
         assert!(rows.iter().all(planned));
         rows[2..9].iter().map(|row| row.peak_w).collect::<Vec<_>>()
@@ -364,7 +349,7 @@ fn runs_of_short_lines_are_slowed_down() {
 fn an_arc_that_brakes_is_not_sped_up() {
     let program = "G21 G90 G17 G94 G64 P0.01 Q0\nF7999\nG1 X30\nG3 X130 Y100 I0 J100 F6000\n\
          G1 Y100.3 F3428\nG1 Y100.6\nG1 Y100.9\nG1 Y182.1\nM2\n";
-    let found = rows(&rig([50, 150, 50], 50, ""), program);
+    let found = rows_of(&rig([50, 150, 50], 50, ""), program);
     let diagonal = 0.5_f64.sqrt();
     let turning_w = 0.1 * diagonal * ((50.0 + 150.0) * 0.1 * diagonal + 2.0 * 50.0);
     let peak_w = found[1].peak_w;
@@ -385,7 +370,7 @@ fn runs_of_short_lines_with_jerk_are_bounded() {
             let _ = writeln!(program, "G1 X{:.3}", 30.0 + step_mm * f64::from(number));
         }
         program.push_str("M2\n");
-        let rows = rows(&machine, &program);
+        let rows = rows_of(&machine, &program);
         let middle = &rows[20..40];
         assert!(
             middle.iter().all(|row| row.certificate == certificate),
@@ -403,7 +388,7 @@ fn runs_of_short_lines_with_jerk_are_bounded() {
 fn a_full_circle_within_the_tolerance_goes_there_and_back() {
     let machine = rig([20, 500, 50], 10, "");
     let time_s = |program: &str| {
-        let all = rows(&machine, program);
+        let all = rows_of(&machine, program);
         all.iter().map(|row| row.duration_s).sum::<f64>()
     };
     let circle = time_s("G21 G90 G17 G94 G64 P2\nF3000\nG2 I0 J-0.9799\nG1 X30\nM2\n");
@@ -427,7 +412,7 @@ fn a_bend_that_is_passed_takes_its_step() {
         0.1 * (x * (20.0 * (x - 0.6) * 50.0 + 10.0) + y * (500.0 * (y - 0.8) * 50.0 + 10.0));
     assert!(stepped_w > 1.8 * steady_w);
     for mode in ["", "G61\n"] {
-        let found = rows(
+        let found = rows_of(
             &rig([20, 500, 50], 10, ""),
             &program.replace("F6000", &format!("F6000\n{mode}")),
         );
@@ -455,7 +440,7 @@ fn bends_after_an_arc_count() {
             20.0 + 200.0 * sin + 60.0 * sx,
             200.0 - 200.0 * cos + 60.0 * sy
         );
-        rows(&machine, &program)[1].peak_w
+        rows_of(&machine, &program)[1].peak_w
     };
     // The arc alone: at its end, and Y is pulled by v²/r·cos.
     let turning_w = 0.1 * sin * 500.0 * 0.01 / 0.2 * cos;

@@ -4,6 +4,8 @@ use super::{plan_program, total_s};
 use gwatt::machine::{AXES, ChordRule, CornerAngle, CornerRule, LookAhead, Machine};
 use std::fmt::Write as _;
 
+use crate::machines::machine_from;
+
 /// Smoothieware: `acceleration`, `junction_deviation` and `planner_queue_size`
 /// of the printer's configuration.
 const RULE: LookAhead = LookAhead {
@@ -47,9 +49,7 @@ fn printer() -> Machine {
             text += "reference_mm_min = 3000\n";
         }
     }
-    let mut machine = Machine::from_toml("printer.toml", &text)
-        .expect("a machine")
-        .0;
+    let mut machine = machine_from(&text);
     assert_eq!(machine.axes.len(), AXES);
     machine.controller.planner.look_ahead = Some(RULE);
     machine

@@ -4,39 +4,30 @@ mod any;
 mod features;
 
 use std::fmt::Write as _;
-use std::io::Cursor;
 
-use gwatt::machine::{Machine, OverrideAt};
-use gwatt::pipeline::{Allowed, Law, LimitOptions, Options, Strategy, Summary, analyze, limit};
+use gwatt::machine::Machine;
+use gwatt::pipeline::Options;
 
 use super::glide::judged;
+use crate::machines::{linear_axes, machine_from};
+use crate::near::assert_near;
+use crate::random::Dice;
+use crate::runs::{WITH_FEEDS, limited, summary_of, turned};
 
 const CONTROLLERS: [&str; 5] = ["grbl", "marlin", "reprap", "klipper", "linuxcnc"];
 
 /// X and Y with 50 kg, 10 N and 1 m/s² each; rapids at 100 mm/s.
 fn plain(controller: &str) -> Machine {
-    let mut text = format!(
+    machine_from(&format!(
         "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n\
-         [converter]\npeak_power_w = 1e6\nregen_power_w = 1e6\n[limits]\nmargin = 0.0\n"
-    );
-    for axis in ["X", "Y"] {
-        let _ = write!(
-            text,
-            "[axes.{axis}]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 50\ncoulomb_n = 10\n"
-        );
-    }
-    Machine::from_toml("test.toml", &text).expect("a machine").0
+         [converter]\npeak_power_w = 1e6\nregen_power_w = 1e6\n[limits]\nmargin = 0.0\n{}",
+        linear_axes("XY", [6000.0, 1000.0, 50.0], "coulomb_n = 10")
+    ))
 }
 
 /// The same where the knobs stand.
 fn at(machine: &Machine, feed: f64, rapid: f64) -> Machine {
-    let mut machine = machine.clone();
-    machine.limits.override_at = Some(OverrideAt {
-        feed,
-        rapid,
-        spindle: 1.0,
-    });
-    machine
+    turned(machine, [feed, rapid, 1.0])
 }
 
 /// Drawn and fed back in each line, W.
@@ -48,7 +39,7 @@ fn peaks(machine: &Machine, program: &str) -> Vec<[f64; 2]> {
 
 #[track_caller]
 fn near(found: f64, expected: f64) {
-    assert!((found - expected).abs() < 1e-6, "{found}, not {expected}");
+    assert_near(found, expected, 1e-6);
 }
 
 /// F7000 and F12000 are both 100 mm/s at 100 %. At 70 % the first is 81.7 mm/s, and the
@@ -115,7 +106,7 @@ fn independent_rapids_that_brake_together() {
         [converter]\npeak_power_w = 1e6\nregen_power_w = 1e6\n\
         [axes.X]\nrapid_mm_min = 60000\naccel_mm_s2 = 20000\nmass_kg = 50\n\
         [axes.Y]\nrapid_mm_min = 36000\naccel_mm_s2 = 500\nmass_kg = 2000\n";
-    let machine = Machine::from_toml("test.toml", text).expect("a machine").0;
+    let machine = machine_from(text);
     let single = |o: f64| peaks(&at(&machine, 1.0, o), "G0 X900 Y500\n")[0][1];
     near(single(1.0), 1000.0);
     near(single(0.9), 1400.0);
@@ -142,27 +133,6 @@ fn independent_rapids_that_brake_together() {
     }
 }
 
-/// Random figures, the same on all platforms.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, from: f64, to: f64) -> f64 {
-        from * libm::pow(to / from, self.next())
-    }
-
-    fn chance(&mut self, share: f64) -> bool {
-        self.next() < share
-    }
-}
-
 /// A machine with a limit; `mode` is the table of the path.
 fn any_machine(dice: &mut Dice, controller: &str, mode: &str) -> String {
     let mut text = format!(
@@ -175,11 +145,11 @@ fn any_machine(dice: &mut Dice, controller: &str, mode: &str) -> String {
             text,
             "[axes.{axis}]\nrapid_mm_min = {:.0}\naccel_mm_s2 = {:.0}\nmass_kg = {:.2}\n\
              coulomb_n = {:.1}\nefficiency = {:.3}\n",
-            dice.between(7000.0, 30000.0),
-            dice.between(400.0, 6000.0),
-            dice.between(5.0, 160.0),
-            dice.between(2.0, 90.0),
-            dice.between(0.6, 0.95)
+            dice.scale(7000.0, 30000.0),
+            dice.scale(400.0, 6000.0),
+            dice.scale(5.0, 160.0),
+            dice.scale(2.0, 90.0),
+            dice.scale(0.6, 0.95)
         );
     }
     text
@@ -189,13 +159,13 @@ fn any_machine(dice: &mut Dice, controller: &str, mode: &str) -> String {
 fn any_program(dice: &mut Dice, controller: &str) -> String {
     let mut text = String::new();
     if controller == "linuxcnc" {
-        let mode = ["G64", "G64 P0.05", "G64 P0.5", "G61"][(dice.next() * 4.0) as usize];
+        let mode = ["G64", "G64 P0.05", "G64 P0.5", "G61"][(dice.unit() * 4.0) as usize];
         let _ = writeln!(text, "{mode}");
     }
-    let (mut x, mut y, mut turn) = (0.0, 0.0, dice.next() * 6.25);
-    for block in 0..2 + (dice.next() * 12.0) as usize {
-        let length = dice.between(0.3, 150.0);
-        turn += (dice.next() + dice.next() - 1.0) * 1.2;
+    let (mut x, mut y, mut turn) = (0.0, 0.0, dice.unit() * 6.25);
+    for block in 0..2 + (dice.unit() * 12.0) as usize {
+        let length = dice.scale(0.3, 150.0);
+        turn += (dice.unit() + dice.unit() - 1.0) * 1.2;
         let (sin, cos) = libm::sincos(turn);
         (x, y) = (x + length * cos, y + length * sin);
         if block > 0 && dice.chance(0.2) {
@@ -204,18 +174,14 @@ fn any_program(dice: &mut Dice, controller: &str) -> String {
         }
         let _ = write!(text, "G1 X{x:.3} Y{y:.3}");
         if dice.chance(0.25) {
-            let _ = write!(text, " Z{:.3}", 20.0 * dice.next());
+            let _ = write!(text, " Z{:.3}", 20.0 * dice.unit());
         }
         if block == 0 || dice.chance(0.6) {
-            let _ = write!(text, " F{:.1}", dice.between(1200.0, 26000.0));
+            let _ = write!(text, " F{:.1}", dice.scale(1200.0, 26000.0));
         }
         text.push('\n');
     }
     text
-}
-
-fn check(machine: &Machine, program: &[u8]) -> Summary {
-    analyze(Cursor::new(program), machine, &Options::default(), None).expect("a program")
 }
 
 /// Certified programs, and how many exceed the limit at some override.
@@ -233,29 +199,17 @@ fn sweep(seed: u64, programs: usize) -> [usize; 2] {
         let machine = |peak_w: f64, regen_w: f64| {
             let converter =
                 format!("[converter]\npeak_power_w = {peak_w}\nregen_power_w = {regen_w}\n");
-            Machine::from_toml("test.toml", &format!("{axes}{converter}"))
-                .expect("a machine")
-                .0
+            machine_from(&format!("{axes}{converter}"))
         };
-        let free = check(&machine(1e6, 1e6), text.as_bytes());
-        let (peak_w, mut regen_w) = (free.peak_w * dice.between(0.6, 0.9), 1e6);
+        let free = summary_of(&machine(1e6, 1e6), &text);
+        let (peak_w, mut regen_w) = (free.peak_w * dice.scale(0.6, 0.9), 1e6);
         if dice.chance(0.5) && free.regen_w > 0.0 {
-            regen_w = free.regen_w * dice.between(0.6, 0.9);
+            regen_w = free.regen_w * dice.scale(0.6, 0.9);
         }
         let machine = machine(peak_w, regen_w);
-        let how = LimitOptions {
-            strategy: Strategy::Optimal,
-            law: Law::Exact,
-            allowed: Allowed {
-                feed: true,
-                ..Allowed::NOTHING
-            },
-            ..LimitOptions::USUAL
-        };
-        let mut out = Vec::new();
-        let input = Cursor::new(text.as_bytes());
-        let summary = limit(input, &machine, &Options::default(), how, &mut out, None);
-        if !summary.expect("a program").certified {
+        let done = limited(&machine, &Options::default(), WITH_FEEDS, &text);
+        let (out, summary) = done.expect("a program");
+        if !summary.certified {
             continue;
         }
         certified += 1;
@@ -269,15 +223,12 @@ fn sweep(seed: u64, programs: usize) -> [usize; 2] {
             let rapid = if dice.chance(0.6) {
                 share
             } else {
-                dice.between(0.05, 1.0)
+                dice.scale(0.05, 1.0)
             };
-            let found = check(&at(&machine, feed, rapid), &out);
+            let found = summary_of(&at(&machine, feed, rapid), &out);
             let most = (found.peak_w / peak_w).max(found.regen_w / regen_w);
             if most > 1.0 + 1e-6 {
-                eprintln!(
-                    "{most} at {feed} {rapid}:\n{axes}\n{}",
-                    String::from_utf8_lossy(&out)
-                );
+                eprintln!("{most} at {feed} {rapid}:\n{axes}\n{out}");
             }
             most > 1.0 + 1e-6
         });

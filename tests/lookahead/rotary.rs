@@ -3,12 +3,11 @@
 //! At a joint with such an axis two elements overlap, the first with half of its
 //! acceleration; the next one keeps all of its own unless its other end takes half.
 
-use std::io::Cursor;
-
 use gwatt::machine::Machine;
-use gwatt::pipeline::{Certificate, Options, Row, analyze};
+use gwatt::pipeline::{Certificate, Row};
 
-use crate::rows::Rows;
+use crate::machines::machine_from;
+use crate::runs::rows_of;
 
 /// An axis: its largest speed by the minute, acceleration, mass or inertia, friction
 /// and weight.
@@ -63,14 +62,11 @@ fn machine(axes: &[Limits]) -> Machine {
         };
         text += &table;
     }
-    Machine::from_toml("test.toml", &text).expect("a machine").0
+    machine_from(&text)
 }
 
 fn rows(axes: &[Limits], program: &str) -> Vec<Row> {
-    let mut rows = Rows::default();
-    let input = Cursor::new(program.as_bytes());
-    analyze(input, &machine(axes), &Options::default(), Some(&mut rows)).expect("a program");
-    rows.0
+    rows_of(&machine(axes), program)
 }
 
 #[test]

@@ -10,6 +10,8 @@ use gwatt::pipeline::{Options, analyze};
 use std::fmt::Write as _;
 use std::io::Cursor;
 
+use crate::machines::machine_from;
+
 const MACHINES: [&str; 6] = ["XYZ", "XYZA", "XYZAC", "XYZUV", "XYZBW", "XYZABC"];
 const PROGRAMS: usize = 50;
 /// Cycles that LinuxCNC's task may take to wait at a word.
@@ -274,7 +276,7 @@ fn recorded_random_programs_draw_no_more_than_planned() {
             "schema = 1\nname = \"{letters}\"\ncontroller = \"linuxcnc\"\n\
              [converter]\npeak_power_w = 1e9\n[limits]\nmargin = 0.0\n{tables}"
         );
-        let machine = Machine::from_toml("test.toml", &text).expect("a machine").0;
+        let machine = machine_from(&text);
         let programs: Vec<String> = (0..count).map(|_| program(&axes, &mut random)).collect();
         let limits: Vec<AxisLimits> = axes.iter().map(|axis| axis.limits).collect();
         let mut left = programs;

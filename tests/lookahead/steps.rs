@@ -6,9 +6,13 @@ use std::io::{self, Cursor};
 
 use super::glide::{judged, judged_for};
 use super::machine;
+use crate::random::Dice;
 use gwatt::machine::{AXES, CornerRule, LookAhead, Machine};
 use gwatt::pipeline::{Options, SeriesSink, series};
 use gwatt::power::{Instant, Want};
+
+use crate::machines::machine_from;
+use crate::near::assert_near;
 
 /// Corners are passed at any speed.
 const FREE: LookAhead = LookAhead {
@@ -46,8 +50,7 @@ fn totals(machine: &Machine, program: &str) -> [f64; 3] {
 
 #[track_caller]
 fn near(found: f64, expected: f64) {
-    let off = (found - expected).abs();
-    assert!(off <= 1e-9 * expected.abs().max(1.0), "{found} {expected}");
+    assert_near(found, expected, 1e-9 * expected.abs().max(1.0));
 }
 
 const CORNER: &str = "G21 G90 G64\nG1 X100 F6000\nG1 Y100\nM2\n";
@@ -125,9 +128,7 @@ fn a_mean_may_last_longer() {
 /// The printer's bed weighs six times its head.
 fn printer() -> Machine {
     let text = include_str!("../../machine-configs/printer.toml");
-    Machine::from_toml("printer.toml", text)
-        .expect("a machine")
-        .0
+    machine_from(text)
 }
 
 /// A circle with a radius of 30 mm at 500 mm/s, as chords of so many degrees.
@@ -165,27 +166,6 @@ fn a_circle_of_chords_is_a_circle() {
     }
 }
 
-/// Seeded numbers in [0, 1).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-
-    fn scale(&mut self, low: f64, high: f64) -> f64 {
-        libm::pow(10.0, self.between(low, high))
-    }
-}
-
 /// A machine of X, Y and Z under a controller.
 struct Axes {
     machine: Machine,
@@ -195,10 +175,10 @@ struct Axes {
 }
 
 impl Axes {
-    fn any(random: &mut Random, controller: &str) -> Self {
-        let mass_kg = [(); 3].map(|()| random.scale(0.0, 2.0));
-        let coulomb_n = [(); 3].map(|()| random.between(0.0, 20.0));
-        let efficiency = random.between(0.6, 1.0);
+    fn any(random: &mut Dice, controller: &str) -> Self {
+        let mass_kg = [(); 3].map(|()| libm::pow(10.0, random.within(0.0, 2.0)));
+        let coulomb_n = [(); 3].map(|()| random.within(0.0, 20.0));
+        let efficiency = random.within(0.6, 1.0);
         let mut text = format!(
             "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[converter]\n\
              peak_power_w = 1e6\nregen_power_w = 1e6\n"
@@ -208,12 +188,12 @@ impl Axes {
                 text,
                 "[axes.{letter}]\nkind = \"linear\"\nrapid_mm_min = 30000\n\
                  accel_mm_s2 = {:?}\nmass_kg = {:?}\ncoulomb_n = {:?}\nefficiency = {efficiency:?}\n",
-                random.between(500.0, 10_000.0),
+                random.within(500.0, 10_000.0),
                 mass_kg[axis],
                 coulomb_n[axis]
             );
         }
-        let (machine, _) = Machine::from_toml("test.toml", &text).expect("a machine");
+        let machine = machine_from(&text);
         Self {
             machine,
             mass_kg,
@@ -235,22 +215,23 @@ impl Axes {
 }
 
 /// A row of curves with corners between.
-fn curvy(random: &mut Random, lines: usize) -> String {
-    let (mut x, mut y) = (random.between(1.0, 60.0), 0.0);
-    let mut feed = random.between(4000.0, 30_000.0);
+fn curvy(random: &mut Dice, lines: usize) -> String {
+    let (mut x, mut y) = (random.within(1.0, 60.0), 0.0);
+    let mut feed = random.within(4000.0, 30_000.0);
     let mut program = format!("G21\nG90\nG1 X{x:.4} F{feed:.0}\n");
-    let (mut heading, mut radius, mut chord) = (0.0, 20.0, random.scale(-0.7, 0.4));
-    let corners = random.next();
+    let (mut heading, mut radius, mut chord) =
+        (0.0, 20.0, libm::pow(10.0, random.within(-0.7, 0.4)));
+    let corners = random.unit();
     for _ in 0..lines {
-        if random.next() < 0.03 {
-            radius = random.scale(0.5, 1.8) * (random.next() - 0.5).signum();
+        if random.unit() < 0.03 {
+            radius = libm::pow(10.0, random.within(0.5, 1.8)) * (random.unit() - 0.5).signum();
         }
-        if random.next() < 0.03 * corners {
-            heading += random.between(-2.0, 2.0);
-            chord = random.scale(-0.7, 0.8);
+        if random.unit() < 0.03 * corners {
+            heading += random.within(-2.0, 2.0);
+            chord = libm::pow(10.0, random.within(-0.7, 0.8));
         }
-        if random.next() < 0.02 {
-            feed = random.between(4000.0, 30_000.0);
+        if random.unit() < 0.02 {
+            feed = random.within(4000.0, 30_000.0);
         }
         heading += chord / radius;
         let (sin, cos) = libm::sincos(heading);
@@ -327,7 +308,7 @@ impl Rows {
 /// reported peaks by the largest of plan and means, and in how many programs the plan
 /// alone would have been too low.
 fn compare(seed: u64, programs: usize, lines: usize) -> (Vec<f64>, usize) {
-    let mut random = Random(seed);
+    let mut random = Dice(seed);
     let (mut ratios, mut low) = (Vec::new(), 0);
     for number in 0..programs {
         let controller = ["grbl", "marlin", "reprap", "klipper"][number % 4];

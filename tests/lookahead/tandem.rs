@@ -4,34 +4,21 @@ use std::fmt::Write as _;
 use std::io::{self, Cursor};
 
 use gwatt::machine::Machine;
-use gwatt::pipeline::{Certificate, Options, Row, SeriesSink, analyze, series};
+use gwatt::pipeline::{Certificate, Options, Row, SeriesSink, series};
 use gwatt::power::Instant;
 use proptest::prelude::*;
 
-use crate::rows::Rows;
+use crate::machines::{linear_axes, machine_from, rotary_axes};
+use crate::runs::rows_of;
 
 /// 200 mm/s, 1 m/s² and 100 kg; the table next to them weighs nothing.
 fn machine() -> Machine {
-    let mut text = "schema = 1\nname = \"test\"\ncontroller = \"linuxcnc\"\n\
-         [converter]\npeak_power_w = 1e6\nregen_power_w = 1e6\n\
-         [axes.A]\nkind = \"rotary\"\nrapid_deg_min = 36000\naccel_deg_s2 = 36000\n\
-         inertia_kg_m2 = 1e-12\n"
-        .to_owned();
-    for axis in ["X", "Y", "Z"] {
-        let _ = write!(
-            text,
-            "[axes.{axis}]\nkind = \"linear\"\nrapid_mm_min = 12000\naccel_mm_s2 = 1000\n\
-             mass_kg = 100\n"
-        );
-    }
-    Machine::from_toml("test.toml", &text).expect("a machine").0
-}
-
-fn rows(machine: &Machine, program: &str) -> Vec<Row> {
-    let mut rows = Rows::default();
-    let input = Cursor::new(program.as_bytes());
-    analyze(input, machine, &Options::default(), Some(&mut rows)).expect("a program");
-    rows.0
+    machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"linuxcnc\"\n\
+         [converter]\npeak_power_w = 1e6\nregen_power_w = 1e6\n{}{}",
+        rotary_axes("A", [36000.0, 36000.0, 1e-12]),
+        linear_axes("XYZ", [12000.0, 1000.0, 100.0], "")
+    ))
 }
 
 /// With half of 1 m/s² each reaches 31.6 mm/s over 2 mm; the ramp of one falls as
@@ -39,7 +26,7 @@ fn rows(machine: &Machine, program: &str) -> Vec<Row> {
 /// and fed back. F lies far above.
 #[test]
 fn two_ramps_at_once_by_hand() {
-    let rows = rows(&machine(), "G21 G90 G94 G64\nG1 X2 A0.1 F3000\nX4 A0\nM2\n");
+    let rows = rows_of(&machine(), "G21 G90 G94 G64\nG1 X2 A0.1 F3000\nX4 A0\nM2\n");
     for row in &rows {
         assert_eq!(row.certificate, Certificate::Planned);
         assert!((row.peak_w - 10_f64.sqrt()).abs() < 1e-6, "{}", row.peak_w);
@@ -92,7 +79,7 @@ proptest! {
         }
         program.push_str("G90\nM2\n");
         let machine = machine();
-        let rows = rows(&machine, &program);
+        let rows = rows_of(&machine, &program);
         let mut shown = Shown::default();
         let input = Cursor::new(program.as_bytes());
         series(input, &machine, &Options::default(), 1e-3, &mut shown).expect("a program");

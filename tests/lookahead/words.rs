@@ -4,12 +4,12 @@
 //! Recorded: X by 20 and by 40 mm at F8000 under G64 P0.05; 2000 mm/s², of which the
 //! last element keeps half. One line takes 0.585 s, two 0.552 s, with a stop 0.722 s.
 
-use std::fmt::Write as _;
 use std::io::Cursor;
 
 use gwatt::machine::Machine;
 use gwatt::pipeline::{Certificate, Options, analyze};
 
+use crate::machines::{linear_axes, machine_from};
 use crate::rows::Rows;
 
 const ONE: [&str; 29] = [
@@ -98,16 +98,11 @@ const STOP: [&str; 28] = [
 ];
 
 fn machine() -> Machine {
-    let mut text = "schema = 1\nname = \"test\"\ncontroller = \"linuxcnc\"\n\
-         [converter]\npeak_power_w = 1e6\n[offsets]\nG54 = { X = 0 }\nG55 = { X = 0 }\n"
-        .to_owned();
-    for letter in ["X", "Y", "Z"] {
-        let _ = write!(
-            text,
-            "[axes.{letter}]\nkind = \"linear\"\nrapid_mm_min = 9000\naccel_mm_s2 = 2000\nmass_kg = 250\n"
-        );
-    }
-    Machine::from_toml("test.toml", &text).expect("a machine").0
+    machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"linuxcnc\"\n[converter]\npeak_power_w = 1e6\n\
+         [offsets]\nG54 = {{ X = 0 }}\nG55 = {{ X = 0 }}\n{}",
+        linear_axes("XYZ", [9000.0, 2000.0, 250.0], "")
+    ))
 }
 
 #[test]

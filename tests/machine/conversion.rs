@@ -2,21 +2,13 @@
 
 use gwatt::machine::{Axis, AxisId, ForcePoint};
 
-use super::{edited, machine};
+use super::{edited, machine, near};
 
 const X: &str = "rapid_mm_min = 36000\naccel_mm_s2 = 6000\nmass_kg = 900\n";
 const B: &str = "rapid_deg_min = 18000\naccel_deg_s2 = 1150\ninertia_kg_m2 = 12\n";
 
 fn axis(text: &str, id: AxisId) -> Axis {
     machine(text).axes[id as usize].expect("the axis")
-}
-
-#[track_caller]
-fn near(found: f64, expected: f64) {
-    assert!(
-        (found - expected).abs() <= 1e-6 * expected.abs(),
-        "{found}, not {expected}"
-    );
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use gwatt::machine::{Axis, AxisId, Machine};
 use insta::assert_snapshot;
 
-use super::{edited, findings, machine};
+use super::{edited, findings, machine, near};
 
 const X: &str = "rapid_mm_min = 36000\naccel_mm_s2 = 6000\nmass_kg = 900\n";
 const B: &str = "rapid_deg_min = 18000\naccel_deg_s2 = 1150\ninertia_kg_m2 = 12\n";
@@ -18,14 +18,6 @@ fn with_x(lines: &str) -> String {
 
 fn axis(machine: &Machine, id: AxisId) -> Axis {
     machine.axes[id as usize].expect("the axis")
-}
-
-#[track_caller]
-fn near(found: f64, expected: f64) {
-    assert!(
-        (found - expected).abs() <= 1e-6 * expected.abs(),
-        "{found}, not {expected}"
-    );
 }
 
 /// Lead 10 mm: k = 2π/0.01 m, k² = 394784.18. Rotor: 0.0002·k² = 78.956835 kg. Screw:

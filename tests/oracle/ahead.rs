@@ -13,8 +13,8 @@ use super::compare::{machine, rows};
 use super::machines;
 use super::plant::Plant;
 use super::programs;
-use super::random::Random;
 use super::series::{Rules, Watch};
+use crate::random::Random;
 
 const CONTROLLERS: [&str; 5] = ["grbl", "marlin", "reprap", "klipper", "linuxcnc"];
 /// Programs of others that last longer are left out.

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
-use super::random::Random;
+use crate::random::Random;
 
 /// How the axes' motion is limited.
 #[derive(Clone, Copy, PartialEq)]

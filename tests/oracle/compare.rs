@@ -9,6 +9,7 @@ use gwatt::pipeline::{self, Options, Row, Summary};
 use super::judge::{Figures, Judge, Step};
 use super::over_time;
 use super::plant::Plant;
+use crate::machines::machine_from;
 use crate::rows::Rows;
 
 /// By what share a closed form may differ.
@@ -37,10 +38,7 @@ pub struct Compared {
 
 /// A machine of the library.
 pub fn machine(toml: &str) -> Machine {
-    match Machine::from_toml("random.toml", toml) {
-        Ok((machine, _)) => machine,
-        Err(found) => panic!("{found:?}\n{toml}"),
-    }
+    machine_from(toml)
 }
 
 /// The steps of a program: its moves as the library reads them, and the speeds

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use super::axes::{self, Motion};
-use super::random::Random;
+use crate::random::Random;
 
 /// A machine and what programs for it may have.
 #[derive(Debug, Clone)]

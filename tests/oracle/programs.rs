@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use super::machines::Described;
-use super::random::Random;
+use crate::random::Random;
 
 /// A program in mm and absolute positions, of so many blocks that move or wait.
 pub fn any(random: &mut Random, machine: &Described, blocks: usize) -> String {

@@ -6,9 +6,10 @@ use super::profile::Limits;
 use super::spindle::Turning;
 use std::f64::consts::TAU;
 
+use crate::near::assert_near;
+
 fn near(found: f64, expected: f64, share: f64) {
-    let error = (found - expected).abs();
-    assert!(error <= share * expected.abs(), "{found}, not {expected}");
+    assert_near(found, expected, share * expected.abs());
 }
 
 const FREE: Limits<'static> = Limits {

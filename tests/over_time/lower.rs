@@ -2,11 +2,12 @@
 
 use std::io::Cursor;
 
-use gwatt::machine::{Machine, OverrideAt};
-use gwatt::pipeline::{
-    Allowed, Failure, Law, LimitOptions, LimitSummary, Options, OverTime, Strategy, Summary,
-    analyze, limit,
-};
+use gwatt::machine::Machine;
+use gwatt::pipeline::{Failure, LimitSummary, Options, OverTime, Summary, analyze};
+
+use crate::machines::machine_from;
+use crate::near::assert_near;
+use crate::runs::{self, WITH_FEEDS, once, turned};
 
 /// Z lifts 100 kg without friction; what else is in the file comes on top.
 fn lift(ratings: &str, rest: &str) -> Machine {
@@ -18,14 +19,7 @@ fn lift(ratings: &str, rest: &str) -> Machine {
          [axes.Z]\nrapid_mm_min = 60000\naccel_mm_s2 = 10000\nmass_kg = 100\n\
          gravity_n = 980.665\n{rest}\n"
     );
-    Machine::from_toml("test.toml", &text).expect("a machine").0
-}
-
-fn once() -> Options {
-    Options {
-        once: true,
-        ..Options::default()
-    }
+    machine_from(&text)
 }
 
 fn check(machine: &Machine, program: &str, options: &Options) -> Summary {
@@ -33,34 +27,17 @@ fn check(machine: &Machine, program: &str, options: &Options) -> Summary {
 }
 
 fn limited(machine: &Machine, program: &str) -> Result<(LimitSummary, String), Failure> {
-    let how = LimitOptions {
-        strategy: Strategy::Optimal,
-        law: Law::Exact,
-        allowed: Allowed {
-            feed: true,
-            ..Allowed::NOTHING
-        },
-        ..LimitOptions::USUAL
-    };
-    let (mut out, input) = (Vec::new(), Cursor::new(program.as_bytes()));
-    let summary = limit(input, machine, &Options::default(), how, &mut out, None)?;
-    Ok((summary, String::from_utf8_lossy(&out).into_owned()))
+    let (text, summary) = runs::limited(machine, &Options::default(), WITH_FEEDS, program)?;
+    Ok((summary, text))
 }
 
 fn at(machine: &Machine, feed: f64, rapid: f64) -> Machine {
-    let mut machine = machine.clone();
-    machine.limits.override_at = Some(OverrideAt {
-        feed,
-        rapid,
-        spindle: 1.0,
-    });
-    machine
+    turned(machine, [feed, rapid, 1.0])
 }
 
 #[track_caller]
 fn near(found: f64, expected: f64, share: f64) {
-    let off = (found - expected).abs() / expected;
-    assert!(off < share, "{found}, not {expected}");
+    assert_near(found, expected, share * expected.abs());
 }
 
 /// 980.665 N at 1 m/s: 981 W for 2 s, and above 400 W as long as the speed is above

@@ -4,30 +4,13 @@
 use std::fmt::Write as _;
 use std::io::Cursor;
 
-use gwatt::machine::{Machine, OverrideAt};
+use gwatt::machine::Machine;
 use gwatt::pipeline::{Certificate, Options, OverTime, analyze};
 use gwatt::power::Measure;
 
-/// Random figures, the same on all platforms.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, from: f64, to: f64) -> f64 {
-        from * libm::pow(to / from, self.next())
-    }
-
-    fn chance(&mut self, share: f64) -> bool {
-        self.next() < share
-    }
-}
+use crate::machines::machine_from;
+use crate::random::Dice;
+use crate::runs::turned;
 
 /// Controller and table of the path.
 const KINDS: [(&str, &str); 10] = [
@@ -49,38 +32,34 @@ fn any_axes(dice: &mut Dice) -> String {
     let [jerk, copper, viscous, weight, servo] =
         [0.25, 0.25, 0.25, 0.35, 0.2].map(|share| dice.chance(share));
     for axis in ["X", "Y", "Z"] {
-        let (accel, mass) = (dice.between(400.0, 8000.0), dice.between(5.0, 160.0));
+        let (accel, mass) = (dice.scale(400.0, 8000.0), dice.scale(5.0, 160.0));
         let force = accel * mass / 1000.0;
         let _ = writeln!(
             text,
             "[axes.{axis}]\nrapid_mm_min = {:.0}\naccel_mm_s2 = {accel:.0}\nmass_kg = {mass:.2}\n\
              coulomb_n = {:.1}\nefficiency = {:.3}",
-            dice.between(7000.0, 60000.0),
-            dice.between(1.0, 0.6 * force + 2.0),
-            dice.between(0.6, 0.95)
+            dice.scale(7000.0, 60000.0),
+            dice.scale(1.0, 0.6 * force + 2.0),
+            dice.scale(0.6, 0.95)
         );
         if jerk && dice.chance(0.8) {
-            let _ = writeln!(text, "jerk_mm_s3 = {:.0}", accel * dice.between(3.0, 300.0));
+            let _ = writeln!(text, "jerk_mm_s3 = {:.0}", accel * dice.scale(3.0, 300.0));
         }
         if copper && dice.chance(0.8) {
-            let _ = writeln!(text, "copper_w_n2 = {:.7}", dice.between(0.01, 0.5) / force);
+            let _ = writeln!(text, "copper_w_n2 = {:.7}", dice.scale(0.01, 0.5) / force);
         }
         if viscous && dice.chance(0.8) {
-            let _ = writeln!(
-                text,
-                "viscous_n_s_m = {:.3}",
-                force * dice.between(0.02, 1.5)
-            );
+            let _ = writeln!(text, "viscous_n_s_m = {:.3}", force * dice.scale(0.02, 1.5));
         }
         if weight && dice.chance(0.8) {
-            let _ = writeln!(text, "gravity_n = {:.2}", (dice.next() - 0.5) * force);
+            let _ = writeln!(text, "gravity_n = {:.2}", (dice.unit() - 0.5) * force);
         }
         if servo && dice.chance(0.8) {
             let _ = writeln!(
                 text,
                 "servo_factor_motor = {:.3}\nservo_factor_regen = {:.3}",
-                1.0 + 0.4 * dice.next(),
-                1.0 + 0.4 * dice.next()
+                1.0 + 0.4 * dice.unit(),
+                1.0 + 0.4 * dice.unit()
             );
         }
     }
@@ -94,19 +73,19 @@ fn any_program(dice: &mut Dice, controller: &str) -> String {
         let _ = writeln!(
             text,
             "{}",
-            ["G64", "G64 P0.05", "G64 P0.5", "G61"][(dice.next() * 4.0) as usize]
+            ["G64", "G64 P0.05", "G64 P0.5", "G61"][(dice.unit() * 4.0) as usize]
         );
     }
     let fast = if dice.chance(0.5) { 600.0 } else { 4000.0 };
-    let (mut x, mut y, mut z, mut turn) = (0.0, 0.0, 0.0, dice.next() * 6.25);
-    for _ in 0..=(dice.next() * 9.0) as usize {
-        let length = dice.between(0.3, 400.0);
+    let (mut x, mut y, mut z, mut turn) = (0.0, 0.0, 0.0, dice.unit() * 6.25);
+    for _ in 0..=(dice.unit() * 9.0) as usize {
+        let length = dice.scale(0.3, 400.0);
         if dice.chance(0.6) {
-            turn += (dice.next() + dice.next() - 1.0) * 1.5;
+            turn += (dice.unit() + dice.unit() - 1.0) * 1.5;
         }
         let (sin, cos) = libm::sincos(turn);
         if dice.chance(0.15) {
-            let pause = dice.between(0.05, 3.0);
+            let pause = dice.scale(0.05, 3.0);
             let word = if matches!(controller, "marlin" | "reprap" | "klipper") {
                 "G4 S"
             } else {
@@ -118,7 +97,7 @@ fn any_program(dice: &mut Dice, controller: &str) -> String {
             let left = dice.chance(0.5);
             let sense = if left { 1.0 } else { -1.0 };
             let radius = length.min(90.0);
-            let sweep = sense * dice.between(0.1, 4.0);
+            let sweep = sense * dice.scale(0.1, 4.0);
             let (i, j) = (-sense * sin * radius, sense * cos * radius);
             let (sin, cos) = libm::sincos(sweep);
             x += i - (i * cos - j * sin);
@@ -129,7 +108,7 @@ fn any_program(dice: &mut Dice, controller: &str) -> String {
         } else {
             (x, y) = (x + length * cos, y + length * sin);
             if dice.chance(0.4) {
-                z += (dice.next() - 0.5) * length;
+                z += (dice.unit() - 0.5) * length;
             }
             if dice.chance(0.4) {
                 let _ = writeln!(text, "G0 X{x:.4} Y{y:.4} Z{z:.4}");
@@ -137,7 +116,7 @@ fn any_program(dice: &mut Dice, controller: &str) -> String {
             }
             let _ = write!(text, "G1 X{x:.4} Y{y:.4} Z{z:.4}");
         }
-        let _ = writeln!(text, " F{:.1}", dice.between(fast, 50000.0));
+        let _ = writeln!(text, " F{:.1}", dice.scale(fast, 50000.0));
     }
     text
 }
@@ -153,14 +132,12 @@ fn over_time(machine: &Machine, program: &str, once: bool) -> Vec<OverTime> {
 }
 
 fn at(machine: &Machine, feed: f64, rapid: f64) -> Machine {
-    let mut machine = machine.clone();
     let limits = &machine.limits;
-    machine.limits.override_at = Some(OverrideAt {
-        feed: feed * limits.feed_override_max,
-        rapid: rapid * limits.rapid_override_max,
-        spindle: 1.0,
-    });
-    machine
+    let [feed, rapid] = [
+        feed * limits.feed_override_max,
+        rapid * limits.rapid_override_max,
+    ];
+    turned(machine, [feed, rapid, 1.0])
 }
 
 /// What a converter bears: the levels, and the limits as far as they are set.
@@ -231,7 +208,7 @@ fn sweep(seed: u64, programs: usize, overrides: usize) -> Found {
         let once = dice.chance(0.5);
         let build = |converter: &str| {
             let text = format!("{head}{converter}");
-            Machine::from_toml("test.toml", &text).expect("a machine").0
+            machine_from(&text)
         };
         let free = build("[converter]\npeak_power_w = 1e6\nregen_power_w = 1e6\n");
         let summary = analyze(
@@ -247,16 +224,16 @@ fn sweep(seed: u64, programs: usize, overrides: usize) -> Found {
         if robust || peak_w < 20.0 || regen_w < 2.0 {
             continue;
         }
-        let low_w = peak_w * dice.between(0.05, 0.9);
+        let low_w = peak_w * dice.scale(0.05, 0.9);
         let ratings = Ratings {
-            peak_w: (peak_w * dice.between(0.4, 1.1)).max(low_w),
-            regen_w: regen_w * dice.between(0.3, 1.1),
-            above_w: [low_w, low_w + peak_w * dice.next()],
-            every_s: [dice.between(0.5, 30.0), dice.between(0.5, 30.0)],
-            window_s: dice.between(0.5, 60.0),
-            brake_w: regen_w * dice.between(0.02, 0.8),
-            rest: match (dice.next() * 8.0) as usize {
-                0 => format!("base_load_w = {:.1}\n", 0.1 * peak_w * dice.next()),
+            peak_w: (peak_w * dice.scale(0.4, 1.1)).max(low_w),
+            regen_w: regen_w * dice.scale(0.3, 1.1),
+            above_w: [low_w, low_w + peak_w * dice.unit()],
+            every_s: [dice.scale(0.5, 30.0), dice.scale(0.5, 30.0)],
+            window_s: dice.scale(0.5, 60.0),
+            brake_w: regen_w * dice.scale(0.02, 0.8),
+            rest: match (dice.unit() * 8.0) as usize {
+                0 => format!("base_load_w = {:.1}\n", 0.1 * peak_w * dice.unit()),
                 1 => "credit_regen = true\n".to_owned(),
                 2 => "credit_capacitance = true\n".to_owned(),
                 _ => String::new(),
@@ -270,9 +247,9 @@ fn sweep(seed: u64, programs: usize, overrides: usize) -> Found {
         let mut worst = largest.clone();
         let mut knobs = vec![[1.0; 2]; worst.len()];
         for _ in 0..overrides {
-            let feed = dice.between(0.03, 1.0);
-            let rapid = match (dice.next() * 4.0) as usize {
-                0 => dice.between(0.03, 1.0),
+            let feed = dice.scale(0.03, 1.0);
+            let rapid = match (dice.unit() * 4.0) as usize {
+                0 => dice.scale(0.03, 1.0),
                 1 => 1.0,
                 _ => feed,
             };

@@ -6,6 +6,8 @@ use gwatt::machine::{Machine, OverrideAt};
 use gwatt::pipeline::{Options, Summary, analyze};
 use gwatt::power::Measure;
 
+use crate::machines::machine_from;
+
 /// An axis of 100 kg at 10 m/s²; `axis` are further lines of it, `converter` of the converter.
 fn machine(letter: &str, axis: &str, converter: &str) -> Machine {
     let text = format!(
@@ -14,7 +16,7 @@ fn machine(letter: &str, axis: &str, converter: &str) -> Machine {
          [converter]\n{converter}\n[axes.{letter}]\nrapid_mm_min = 200000\n\
          accel_mm_s2 = 10000\nmass_kg = 100\n{axis}\n"
     );
-    let mut machine = Machine::from_toml("test.toml", &text).expect("a machine").0;
+    let mut machine = machine_from(&text);
     machine.limits.override_at = Some(OverrideAt {
         feed: 1.0,
         rapid: 1.0,

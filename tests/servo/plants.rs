@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::command::{Command, SIMULATED};
 use super::drive::{Drive, Load, Loops};
-use crate::oracle::random::Random;
+use crate::random::Random;
 
 /// An axis as it is described.
 #[derive(Debug, Clone, Copy)]

@@ -3,13 +3,14 @@
 use std::fs;
 use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
 use gwatt::machine::Machine;
 use gwatt::plan::SpindleDrive;
 use tempfile::TempDir;
 
 use super::near;
+use crate::shop::{ended, gwatt};
 
 /// A machine whose spindle reaches 3000/min in 1 s.
 const MACHINE: &str = r#"schema = 1
@@ -55,20 +56,15 @@ impl Bench {
     }
 
     fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_gwatt"));
-        command
-            .arg("spindle")
-            .args(arguments)
-            .current_dir(self.folder.path())
-            .stdin(Stdio::null());
-        command
+        let arguments = [&["spindle"], arguments].concat();
+        gwatt(self.folder.path(), arguments)
     }
 
     /// Runs a schedule: exit code, standard output and error.
     fn run(&self, schedule: &str, more: &[&str]) -> (i32, String, String) {
         self.put("s.csv", schedule);
         let arguments = [&["s.csv", "-m", "m.toml"], more].concat();
-        said(self.command(&arguments).output().unwrap())
+        ended(self.command(&arguments).output().unwrap())
     }
 
     /// Asserts that a schedule is refused, and leaves no file; gives why.
@@ -78,15 +74,6 @@ impl Bench {
         assert!(!Path::exists(&self.path("out.csv")) && !Path::exists(&self.path("out.svg")));
         err
     }
-}
-
-fn said(output: Output) -> (i32, String, String) {
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (
-        output.status.code().unwrap(),
-        text(output.stdout),
-        text(output.stderr),
-    )
 }
 
 fn numbers(csv: &str) -> Vec<Vec<f64>> {
@@ -173,7 +160,7 @@ fn a_schedule_may_come_without_a_header_and_from_a_pipe() {
     let mut stdin = child.stdin.take().unwrap();
     stdin.write_all(b"0,1000\r\n\"0.5\",0\r\n").unwrap();
     drop(stdin);
-    let (code, without, err) = said(child.wait_with_output().unwrap());
+    let (code, without, err) = ended(child.wait_with_output().unwrap());
     assert_eq!(code, 0, "{err}");
     assert_eq!(with, without);
     assert_eq!(numbers(&with)[1][0], 0.004);
@@ -261,7 +248,7 @@ fn mistakes_are_shown_with_their_place() {
         }
     }
     bench.put("s.csv", b"0,\xFF\n");
-    let (code, _, err) = said(bench.command(&["s.csv", "-m", "m.toml"]).output().unwrap());
+    let (code, _, err) = ended(bench.command(&["s.csv", "-m", "m.toml"]).output().unwrap());
     assert!(code == 2 && err.contains("this line is not text"), "{err}");
 }
 
@@ -269,7 +256,7 @@ fn mistakes_are_shown_with_their_place() {
 fn machines_and_periods_that_do_not_do() {
     let bench = Bench::new();
     bench.put("s.csv", "0,1000\n");
-    let run = |arguments: &[&str]| said(bench.command(arguments).output().unwrap());
+    let run = |arguments: &[&str]| ended(bench.command(arguments).output().unwrap());
     let (code, _, err) = run(&["s.csv", "-m", "three-axis"]);
     assert!(
         code == 2 && err.contains("the machine has no [spindle]"),
@@ -294,10 +281,8 @@ fn machines_and_periods_that_do_not_do() {
 #[test]
 fn the_check_of_a_machine_tells_the_run_up() {
     let bench = Bench::new();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_gwatt"));
-    command.args(["machine", "check", "m.toml"]);
-    command.current_dir(bench.folder.path());
-    let (code, out, _) = said(command.output().unwrap());
+    let mut command = gwatt(bench.folder.path(), ["machine", "check", "m.toml"]);
+    let (code, out, _) = ended(command.output().unwrap());
     assert_eq!(code, 0);
     assert!(
         out.contains("  spindle: 3000 1/min in 1.00 s, peak "),
@@ -332,7 +317,7 @@ fn a_closed_pipe_ends_quietly() {
     let (reader, writer) = std::io::pipe().unwrap();
     drop(reader);
     let mut command = bench.command(&["s.csv", "-m", "m.toml"]);
-    let (code, _, err) = said(command.stdout(writer).output().unwrap());
+    let (code, _, err) = ended(command.stdout(writer).output().unwrap());
     assert_eq!(code, 0, "{err}");
     assert!(!err.contains("cannot write"), "{err}");
 }

@@ -8,7 +8,8 @@ use gwatt::identify::tune::of_recording;
 use gwatt::identify::{Factor, Measured, TransferFunction, simulate};
 
 use super::pair;
-use crate::identify::{Noise, PERIOD_S, choice, m_sequence, table};
+use crate::identify::{PERIOD_S, choice, m_sequence, table};
+use crate::random::Random;
 
 /// A command that is held between samples, and one that the drive joins by
 /// straight lines a period later: both give the zero of the load.
@@ -44,7 +45,7 @@ fn commands_may_be_held_or_run_on() {
         })
         .collect();
     let lag_s: f64 = truth.poles.iter().map(|pole| pole.lag_s()).sum();
-    let mut random = Noise::new(3);
+    let mut random = Random(3);
     // Held it is half a period late on average; joined a period later, a whole one.
     for (load, late_s) in [(held, 0.5 * PERIOD_S), (joined, PERIOD_S)] {
         // A thousandth of the way: encoders.

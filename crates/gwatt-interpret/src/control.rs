@@ -60,7 +60,7 @@ pub(super) struct Control<'m> {
     /// What a restored state still has to do and to say.
     pub(super) pending_actions: Vec<(ActionKind, f64)>,
     pub(super) lost: Option<&'static str>,
-    /// Targets are more than offsets: see `targets`.
+    /// Targets are more than offsets: see `target_coordinates`.
     pub(super) bent: bool,
     /// Cutter compensation, while it is on or being left.
     pub(super) compensation: Option<Box<Compensation>>,
@@ -71,7 +71,7 @@ pub(super) struct Control<'m> {
     pub(super) printer: printer::State,
     /// The words of a block need a second look: see `dialect`.
     pub(super) adapts: bool,
-    /// Blocks may take the short way: see `direct`.
+    /// Blocks may take the short way: see `fast_path`.
     pub(super) direct: bool,
     /// The program that the block names to be called.
     pub(super) callee: Option<String>,

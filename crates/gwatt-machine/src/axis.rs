@@ -1,6 +1,8 @@
 //! Axes: their names, and what gwatt knows of each.
 
 use super::servo::Servo;
+use schemars::JsonSchema;
+use serde::Deserialize;
 
 /// Number of axis letters that a program can move.
 pub const AXES: usize = 10;
@@ -95,7 +97,8 @@ impl std::fmt::Display for AxisSet {
 }
 
 /// Whether an axis slides or turns.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum AxisKind {
     /// Positions in mm; mass in kg, forces in N.
     Linear,

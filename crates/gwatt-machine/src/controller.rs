@@ -7,6 +7,8 @@ use super::look_ahead::LookAhead;
 use super::printer::Printer;
 use super::queue::Queue;
 use crate::family::Family;
+use schemars::JsonSchema;
+use serde::Deserialize;
 
 /// A controller profile.
 #[derive(Debug, Clone, PartialEq)]
@@ -125,7 +127,8 @@ pub struct Language {
 }
 
 /// The motion word in force before a program has one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum PowerOnMotion {
     /// None: the control refuses a place without one.
     None,
@@ -133,12 +136,14 @@ pub enum PowerOnMotion {
     Rapid,
     /// G1.
     Feed,
-    /// One of these: a setting of the control decides.
+    /// A setting of the control decides between G0 and G1: moves before any motion word count as
+    /// rapids, the fastest of both.
     Unknown,
 }
 
 /// When the tool changes where M6 stands in a block that moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum ToolChange {
     /// Before the axes move.
     BeforeMotion,
@@ -242,18 +247,20 @@ impl Dialect {
 }
 
 /// What an arc without a centre and a radius is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum ArcWithoutCenter {
-    /// An error.
+    /// An alarm.
     Refused,
     /// A straight line to its end, at F.
     Line,
-    /// A parameter of the control says which of both: it counts as a line.
+    /// A line or an alarm, as a parameter of the control says: it counts as a line.
     LineOrAlarm,
 }
 
 /// What a number without a decimal point means.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Point {
     /// The same as with a point after it.
     Calculator,
@@ -262,7 +269,7 @@ pub enum Point {
 }
 
 /// The G codes of a lathe (Fanuc: G-code systems).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 pub enum Lathe {
     /// G90, G92 and G94 are cycles, U and W are incremental.
     A,
@@ -285,7 +292,8 @@ pub struct CutterCompensation {
 }
 
 /// How the tool's centre gets round an outside corner.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum CompensationCorner {
     /// By an arc about the corner.
     Arc,
@@ -294,15 +302,18 @@ pub enum CompensationCorner {
     /// across (Fanuc).
     Line,
     /// Straight on, to where the shifted lines meet; by an arc where the path
-    /// bends by more than 100° (SINUMERIK G451).
+    /// bends by more than 100° (SINUMERIK G451). Programs select it, profiles do not.
+    #[serde(skip)]
     Intersection,
 }
 
 /// Where the move that switches the compensation on ends, and where the one
 /// that switches it off begins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum CompensationLead {
     /// Next to its own end; then round the corner like any other (LinuxCNC).
+    #[serde(alias = "beside")]
     AtEnd,
     /// Next to the start of the next move (Fanuc's type A, SINUMERIK NORM).
     Perpendicular,
@@ -311,7 +322,8 @@ pub enum CompensationLead {
 }
 
 /// What happens at the joint of two blocks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum PathMode {
     /// Every block ends at rest.
     ExactStop,
@@ -320,7 +332,8 @@ pub enum PathMode {
 }
 
 /// How rapids run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum RapidPath {
     /// A straight line: all axes start and arrive together.
     Linear,
@@ -352,9 +365,11 @@ pub struct Planner {
 }
 
 /// What waits until the spindle has its speed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum SpindleWait {
-    /// It is not known whether anything does.
+    /// It is not known whether anything does: the profile does not say.
+    #[serde(skip)]
     Unknown,
     /// Nothing.
     Nothing,
@@ -365,7 +380,8 @@ pub enum SpindleWait {
 }
 
 /// Whether rapids are blended with their neighbours where the path mode blends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum RapidJoint {
     /// A rapid starts from rest and ends at rest.
     Stop,
@@ -376,7 +392,8 @@ pub enum RapidJoint {
 }
 
 /// How acceleration is shared between turning and speeding up on an arc.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum ArcRule {
     /// Tangential and centripetal each at most `a_min/√2`, `a_min` the smallest
     /// limit of the moving axes.

@@ -1,8 +1,12 @@
 //! Families of languages, and what they differ in where programs are written and where the
 //! control's words say what is drawn. How they are read is a matter of the interpreter.
 
+use schemars::JsonSchema;
+use serde::Deserialize;
+
 /// The family of words.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Family {
     /// ISO 6983 as most machine tools read it.
     Iso,

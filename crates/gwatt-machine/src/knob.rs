@@ -3,6 +3,8 @@
 use super::axis::{Axis, AxisKind};
 use super::levels::Levels;
 use crate::units::SECONDS_PER_MINUTE;
+use schemars::JsonSchema;
+use serde::Deserialize;
 
 /// A word that limits speed or acceleration until it is taken back.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,7 +105,8 @@ impl Knob {
 }
 
 /// What a knob acts on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum KnobTarget {
     /// Acceleration of feed moves.
     FeedAccel,
@@ -148,7 +151,8 @@ pub enum KnobArgument {
 }
 
 /// Unit of a knob's value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum KnobUnit {
     /// Percent of the machine's limit; 100 takes it back.
     Percent,

@@ -1,6 +1,8 @@
 //! How a controller runs through the joints of blocks: rules as data.
 
 use super::axis::AxisValues;
+use schemars::JsonSchema;
+use serde::Deserialize;
 
 /// The rules of a look-ahead planner.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,7 +81,8 @@ pub enum CornerRule {
 }
 
 /// Which directions make the angle of a corner.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum CornerAngle {
     /// Those of all axes, the extruder too.
     AllAxes,

@@ -1,6 +1,8 @@
 //! What the firmwares of 3D printers differ in; the defaults are Marlin's.
 
 use super::axis::{AxisId, AxisSet};
+use schemars::JsonSchema;
+use serde::Deserialize;
 
 /// Differences within the Marlin family of words, from `[language.printer]`.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +61,8 @@ pub struct Printer {
 }
 
 /// What G90 and G91 mean for the extruder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum ExtruderMode {
     /// They set its mode too; M82 and M83 set it alone.
     Follows,

@@ -7,7 +7,8 @@ use gwatt::machine::{Machine, builtin};
 use gwatt::pipeline::LimitOptions;
 
 use super::marking;
-use crate::oracle::random::Random;
+use crate::machines::{linear_axes, machine_from};
+use crate::random::Random;
 
 /// How often a random program is made for each machine.
 const PROGRAMS: u64 = 12;
@@ -23,18 +24,11 @@ fn with_share(machine: &Machine, share: f64) -> Machine {
 
 /// X, Y and Z of this controller, which stop at each block or not.
 fn own(controller: &str, path: &str) -> Machine {
-    let mut text = format!(
+    machine_from(&format!(
         "schema = 1\nname = \"own\"\ncontroller = \"{controller}\"\n[converter]\n\
-         peak_power_w = 1000\nbase_load_w = 100\n[limits]\nmargin = 0\n[path]\n{path}\n"
-    );
-    for letter in ["X", "Y", "Z"] {
-        let _ = write!(
-            text,
-            "[axes.{letter}]\nkind = \"linear\"\nrapid_mm_min = 24000\naccel_mm_s2 = 3000\n\
-             mass_kg = 400\ncoulomb_n = 200\n"
-        );
-    }
-    Machine::from_toml("own.toml", &text).expect("a machine").0
+         peak_power_w = 1000\nbase_load_w = 100\n[limits]\nmargin = 0\n[path]\n{path}\n{}",
+        linear_axes("XYZ", [24000.0, 3000.0, 400.0], "coulomb_n = 200")
+    ))
 }
 
 /// The axes of a control's programs, and ways to begin them: feeds by the minute, and on

@@ -5,7 +5,8 @@
 //! shortest path: pieces that speed up, then one that brakes with 5 m/s², which feeds back.
 
 use super::{HOW, limited};
-use gwatt::machine::Machine;
+
+use crate::machines::machine_from;
 
 const MASS_KG: f64 = 500.0;
 const ACCEL_M_S2: f64 = 5.0;
@@ -56,7 +57,7 @@ fn points(
          peak_power_w = {power_w:?}\n[limits]\nmargin = 0\n[axes.X]\nkind = \"linear\"\n\
          rapid_mm_min = 30000\naccel_mm_s2 = 5000\nmass_kg = 500\n"
     );
-    let machine = Machine::from_toml("one.toml", &text).expect("a machine").0;
+    let machine = machine_from(&text);
     let program = match controller {
         "isg" => format!("G0 X{way_mm}\nM30\n"),
         _ => format!("G0 X{way_mm} F200000\n"),

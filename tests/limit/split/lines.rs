@@ -4,7 +4,8 @@ use gwatt::machine::PathMode;
 use gwatt::pipeline::Certificate;
 
 use super::super::{EXACT_STOP, Rig};
-use super::{ISG, reported};
+use super::ISG;
+use crate::runs::rows_of;
 
 /// Blocks of one line between two stops are planned together; whatever else joins them
 /// or stands between them brings the robust bound back.
@@ -12,7 +13,7 @@ use super::{ISG, reported};
 fn lines_between_two_stops_are_planned() {
     let machine = ISG.machine();
     let certificates = |program: &str| -> Vec<Certificate> {
-        let rows = reported(&machine, program);
+        let rows = rows_of(&machine, program);
         let moves = rows.iter().filter(|row| row.kind.name() != "dwell");
         moves.map(|row| row.certificate).collect()
     };
@@ -37,7 +38,7 @@ fn lines_between_two_stops_are_planned() {
         assert!(found.contains(&robust), "{program} {found:?}");
     }
     // 5 m/s² over 100 mm lead to 1 m/s: 0.5 m/s after 0.1 s, and the second block brakes.
-    let rows = reported(&machine, "G0 X100\nG231 = 40\nX300\nM30\n");
+    let rows = rows_of(&machine, "G0 X100\nG231 = 40\nX300\nM30\n");
     let first_s = 0.1 + (100.0 - 25.0) / 500.0;
     let second_s = (200.0 - 62.5) / 500.0 + 0.25;
     assert!((rows[0].duration_s - first_s).abs() < 1e-9);
@@ -51,7 +52,7 @@ fn lines_between_two_stops_are_planned() {
 #[test]
 fn exact_stops_of_the_isg_kernel_are_read() {
     let machine = ISG.machine();
-    let rows = reported(
+    let rows = rows_of(
         &machine,
         "G360\nG0 X100\nX200\nG359\nX300 G60\nX400\nY9\nM30\n",
     );
@@ -66,7 +67,7 @@ fn exact_stops_of_the_isg_kernel_are_read() {
         ..ISG
     };
     assert_eq!(rig.machine().path.mode, Some(PathMode::ExactStop));
-    let rows = reported(&rig.machine(), "G359\nG0 X100\nX200\nY9\nM30\n");
+    let rows = rows_of(&rig.machine(), "G359\nG0 X100\nX200\nY9\nM30\n");
     assert!(
         rows.iter()
             .all(|row| row.certificate == Certificate::Planned)

@@ -1,9 +1,13 @@
 //! What pieces lose against the physics: points are hundredths of the time without a limit.
 
-use super::reference::{Axes, Random};
-use super::{HOW, limited, reported};
+use super::reference::Axes;
+use super::{HOW, limited};
+use crate::random::Random;
+use crate::runs::rows_of;
 use gwatt::machine::Machine;
 use std::fmt::Write as _;
+
+use crate::machines::machine_from;
 
 const SHARES: [f64; 4] = [0.9, 0.7, 0.5, 0.35];
 
@@ -54,7 +58,7 @@ impl Control {
             self.name,
             axes.text()
         );
-        Machine::from_toml("any.toml", &text).expect("a machine").0
+        machine_from(&text)
     }
 
     fn axes(&self, random: &mut Random) -> Axes {
@@ -68,7 +72,7 @@ impl Control {
         let mut split = 0;
         for _ in 0..8 {
             let axes = self.axes(&mut random);
-            let count = random.between(1.0, 3.999) as usize;
+            let count = random.within(1.0, 3.999) as usize;
             let mut way_mm = [0.0; 3];
             let mut block = String::from("G0");
             for (letter, way_mm) in ["X", "Y", "Z"].iter().zip(&mut way_mm).take(count) {
@@ -96,7 +100,7 @@ impl Control {
                 // The block is the last of its line, and nothing else is changed.
                 let whole = format!("{block}{}\n", self.feed);
                 assert!(text.contains(&whole), "{text}");
-                for row in reported(&machine, &text) {
+                for row in rows_of(&machine, &text) {
                     assert!(row.peak_w <= limit_w * (1.0 + 1e-9), "{}", row.peak_w);
                 }
             }
@@ -115,7 +119,7 @@ impl Control {
             let mut program = String::new();
             for number in 0..4 {
                 let before = place;
-                let count = random.between(1.0, 2.999) as usize;
+                let count = random.within(1.0, 2.999) as usize;
                 // The next axis comes in with each line: all corners are sharp.
                 let moving = (number..number + count).map(|axis| axis % 3);
                 program.push_str("G0");

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use crate::random::Random;
+
 /// What an axis of the reference has, SI.
 #[derive(Clone, Copy)]
 struct Axis {
@@ -34,18 +36,18 @@ impl Axes {
     pub(super) fn any(random: &mut Random, along_path: bool) -> Self {
         let mut axes: Vec<Axis> = Vec::new();
         for letter in ["X", "Y", "Z"] {
-            let mut limits = (random.between(0.3, 1.0), random.between(2.0, 10.0));
+            let mut limits = (random.within(0.3, 1.0), random.within(2.0, 10.0));
             if let Some(x) = axes.first().filter(|_| along_path && letter == "Y") {
                 limits = (x.rapid_m_s, x.accel_m_s2);
             }
-            let mass_kg = random.between(20.0, 900.0);
+            let mass_kg = random.within(20.0, 900.0);
             axes.push(Axis {
                 letter,
                 rapid_m_s: limits.0,
                 accel_m_s2: limits.1,
                 mass_kg,
-                coulomb_n: mass_kg * limits.1 * random.between(0.0, 0.2),
-                efficiency: [1.0, 0.85, 0.7][random.between(0.0, 2.999) as usize],
+                coulomb_n: mass_kg * limits.1 * random.within(0.0, 0.2),
+                efficiency: [1.0, 0.85, 0.7][random.within(0.0, 2.999) as usize],
             });
         }
         Self { axes, along_path }
@@ -152,20 +154,9 @@ impl Line {
     }
 }
 
-/// Numbers from 0 to 1 (`SplitMix64`).
-pub(super) struct Random(pub(super) u64);
-
 impl Random {
-    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        low + (high - low) * ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
     /// A distance in mm, to a thousandth.
     pub(super) fn way_mm(&mut self, [low, high]: [f64; 2]) -> f64 {
-        (self.between(low, high) * 1e3).round() / 1e3
+        (self.within(low, high) * 1e3).round() / 1e3
     }
 }

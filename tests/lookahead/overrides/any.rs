@@ -3,8 +3,9 @@
 
 use super::features::most;
 use super::{CONTROLLERS, Dice, at};
-use gwatt::machine::Machine;
 use std::fmt::Write as _;
+
+use crate::machines::machine_from;
 
 /// X, Y and Z with some of limits of jerk, losses in copper, viscous friction, weights.
 fn any_axes(dice: &mut Dice, controller: &str, mode: &str) -> String {
@@ -14,31 +15,27 @@ fn any_axes(dice: &mut Dice, controller: &str, mode: &str) -> String {
     );
     let [jerk, copper, viscous, weight] = [0.4, 0.4, 0.4, 0.4].map(|share| dice.chance(share));
     for axis in ["X", "Y", "Z"] {
-        let (accel, mass) = (dice.between(400.0, 8000.0), dice.between(5.0, 160.0));
+        let (accel, mass) = (dice.scale(400.0, 8000.0), dice.scale(5.0, 160.0));
         let force = accel * mass / 1000.0;
         let _ = writeln!(
             text,
             "[axes.{axis}]\nrapid_mm_min = {:.0}\naccel_mm_s2 = {accel:.0}\nmass_kg = {mass:.2}\n\
              coulomb_n = {:.1}\nefficiency = {:.3}",
-            dice.between(7000.0, 60000.0),
-            dice.between(1.0, 0.3 * force + 2.0),
-            dice.between(0.6, 0.95)
+            dice.scale(7000.0, 60000.0),
+            dice.scale(1.0, 0.3 * force + 2.0),
+            dice.scale(0.6, 0.95)
         );
         if jerk && dice.chance(0.8) {
-            let _ = writeln!(text, "jerk_mm_s3 = {:.0}", accel * dice.between(3.0, 300.0));
+            let _ = writeln!(text, "jerk_mm_s3 = {:.0}", accel * dice.scale(3.0, 300.0));
         }
         if copper && dice.chance(0.8) {
-            let _ = writeln!(text, "copper_w_n2 = {:.7}", dice.between(0.01, 0.5) / force);
+            let _ = writeln!(text, "copper_w_n2 = {:.7}", dice.scale(0.01, 0.5) / force);
         }
         if viscous && dice.chance(0.8) {
-            let _ = writeln!(
-                text,
-                "viscous_n_s_m = {:.3}",
-                force * dice.between(0.02, 3.0)
-            );
+            let _ = writeln!(text, "viscous_n_s_m = {:.3}", force * dice.scale(0.02, 3.0));
         }
         if weight && dice.chance(0.8) {
-            let _ = writeln!(text, "gravity_n = {:.2}", (dice.next() - 0.5) * force);
+            let _ = writeln!(text, "gravity_n = {:.2}", (dice.unit() - 0.5) * force);
         }
     }
     text
@@ -51,19 +48,19 @@ fn any_path(dice: &mut Dice, controller: &str) -> String {
         let _ = writeln!(
             text,
             "{}",
-            ["G64", "G64 P0.05", "G61"][(dice.next() * 3.0) as usize]
+            ["G64", "G64 P0.05", "G61"][(dice.unit() * 3.0) as usize]
         );
     }
-    let (mut x, mut y, mut z, mut turn) = (0.0, 0.0, 0.0, dice.next() * 6.25);
+    let (mut x, mut y, mut z, mut turn) = (0.0, 0.0, 0.0, dice.unit() * 6.25);
     let short = dice.chance(0.4);
-    for block in 0..=(dice.next() * 6.0) as usize {
+    for block in 0..=(dice.unit() * 6.0) as usize {
         let length = if short && dice.chance(0.7) {
-            dice.between(0.1, 3.0)
+            dice.scale(0.1, 3.0)
         } else {
-            dice.between(0.3, 150.0)
+            dice.scale(0.3, 150.0)
         };
         if dice.chance(0.6) {
-            turn += (dice.next() + dice.next() - 1.0) * 1.2;
+            turn += (dice.unit() + dice.unit() - 1.0) * 1.2;
         }
         let (sin, cos) = libm::sincos(turn);
         if dice.chance(0.3) {
@@ -71,7 +68,7 @@ fn any_path(dice: &mut Dice, controller: &str) -> String {
             let left = dice.chance(0.5);
             let sense = if left { 1.0 } else { -1.0 };
             let radius = length.min(60.0);
-            let sweep = sense * dice.between(0.1, 3.0);
+            let sweep = sense * dice.scale(0.1, 3.0);
             let (i, j) = (-sense * sin * radius, sense * cos * radius);
             let (sin, cos) = libm::sincos(sweep);
             x += i - (i * cos - j * sin);
@@ -91,10 +88,10 @@ fn any_path(dice: &mut Dice, controller: &str) -> String {
             let _ = write!(text, "G1 X{x:.4} Y{y:.4}");
         }
         if dice.chance(0.25) {
-            z += (dice.next() - 0.5) * length;
+            z += (dice.unit() - 0.5) * length;
             let _ = write!(text, " Z{z:.4}");
         }
-        let _ = writeln!(text, " F{:.1}", dice.between(600.0, 40000.0));
+        let _ = writeln!(text, " F{:.1}", dice.scale(600.0, 40000.0));
     }
     text
 }
@@ -111,16 +108,16 @@ fn exceeded(seed: u64, programs: usize) -> usize {
             index => (CONTROLLERS[index], "rapid = \"linear\""),
         };
         let axes = any_axes(&mut dice, controller, mode);
-        let machine = Machine::from_toml("test.toml", &axes).expect("a machine").0;
+        let machine = machine_from(&axes);
         let text = any_path(&mut dice, controller);
         let any = most(&machine, &text);
         let mut worst = (0.0_f64, [1.0; 2]);
         for _ in 0..12 {
-            let feed = dice.between(0.03, 1.0);
+            let feed = dice.scale(0.03, 1.0);
             let rapid = if dice.chance(0.6) {
                 feed
             } else {
-                dice.between(0.03, 1.0)
+                dice.scale(0.03, 1.0)
             };
             let one = most(&at(&machine, feed, rapid), &text);
             for side in 0..2 {

@@ -3,24 +3,24 @@
 
 use super::{Dice, at, peaks};
 use gwatt::machine::Machine;
-use std::fmt::Write as _;
+
+use crate::machines::{linear_axes, machine_from};
 
 /// Rapid in mm/min, acceleration in mm/s², mass in kg, friction in N, and what else.
 type Axis = (f64, f64, f64, f64, &'static str);
 
 fn machine(controller: &str, path: &str, axes: &[(&str, Axis)]) -> Machine {
-    let mut text = format!(
+    let axes = axes
+        .iter()
+        .map(|(axis, (rapid, accel, mass, coulomb, more))| {
+            let more = format!("coulomb_n = {coulomb}\n{more}");
+            linear_axes(axis, [*rapid, *accel, *mass], &more)
+        });
+    machine_from(&format!(
         "schema = 1\nname = \"test\"\ncontroller = \"{controller}\"\n[path]\n{path}\n\
-         [converter]\npeak_power_w = 1e6\nregen_power_w = 1e6\n[limits]\nmargin = 0.0\n"
-    );
-    for (axis, (rapid, accel, mass, coulomb, more)) in axes {
-        let _ = write!(
-            text,
-            "[axes.{axis}]\nrapid_mm_min = {rapid}\naccel_mm_s2 = {accel}\nmass_kg = {mass}\n\
-             coulomb_n = {coulomb}\n{more}\n"
-        );
-    }
-    Machine::from_toml("test.toml", &text).expect("a machine").0
+         [converter]\npeak_power_w = 1e6\nregen_power_w = 1e6\n[limits]\nmargin = 0.0\n{}",
+        axes.collect::<String>()
+    ))
 }
 
 /// The largest peaks of a program.
@@ -419,14 +419,14 @@ fn independent_rapids_with_jerk() {
     let mut dice = Dice(7);
     for _ in 0..20 {
         let mut axis = || {
-            let accel = dice.between(400.0, 8000.0);
+            let accel = dice.scale(400.0, 8000.0);
             let jerk: &'static str =
                 ["jerk_mm_s3 = 9000", "jerk_mm_s3 = 60000"][usize::from(dice.chance(0.5))];
             (
-                dice.between(7000.0, 60000.0),
+                dice.scale(7000.0, 60000.0),
                 accel,
-                dice.between(5.0, 160.0),
-                dice.between(2.0, 90.0),
+                dice.scale(5.0, 160.0),
+                dice.scale(2.0, 90.0),
                 jerk,
             )
         };
@@ -434,8 +434,8 @@ fn independent_rapids_with_jerk() {
         let machine = machine("iso", "rapid = \"independent\"", &axes);
         let program = format!(
             "G0 X{:.2} Y{:.2}\n",
-            dice.between(1.0, 900.0),
-            dice.between(1.0, 900.0)
+            dice.scale(1.0, 900.0),
+            dice.scale(1.0, 900.0)
         );
         covers(&machine, &program, 2.0);
     }

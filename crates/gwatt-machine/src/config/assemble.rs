@@ -2,7 +2,6 @@
 
 use super::findings::Findings;
 use super::machine_file::{LimitsTable, MachineFile, PathTable};
-use super::path_name::{path_mode, rapid_path};
 use super::value::{Num, Number, PerAxis};
 use super::{
     axis, converter, drive_curve, kinematics, levels, look_ahead, offsets, outputs, own_language,
@@ -164,10 +163,10 @@ const RESPONSE_TIME_S: f64 = 0.01;
 
 fn path(table: Option<&PathTable>, controller: &Controller) -> Path {
     Path {
-        mode: table.and_then(|table| table.mode).map(path_mode),
+        mode: table.and_then(|table| table.mode),
         rapid: table
             .and_then(|table| table.rapid)
-            .map_or(controller.planner.rapid, rapid_path),
+            .unwrap_or(controller.planner.rapid),
         response_time_s: value(
             table.and_then(|table| table.response_time_s.as_ref()),
             RESPONSE_TIME_S,

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use super::findings::Findings;
-use super::machine_file::{AxisTable, KindName};
+use super::machine_file::AxisTable;
 use super::parts;
 use super::plausible;
 use super::quantity::{Given, Quantities, form};
@@ -59,9 +59,9 @@ pub(crate) fn axis(
 /// The kind as given, else by the letter.
 pub(super) fn kind(id: AxisId, table: &AxisTable) -> AxisKind {
     match table.kind.as_ref().map(|kind| kind.value) {
-        Some(KindName::Rotary) => AxisKind::Rotary,
+        Some(kind) => kind,
         None if matches!(id, AxisId::A | AxisId::B | AxisId::C) => AxisKind::Rotary,
-        Some(KindName::Linear) | None => AxisKind::Linear,
+        None => AxisKind::Linear,
     }
 }
 

@@ -7,21 +7,14 @@ use super::part_tables::{ScrewTable, WheelTable};
 use super::value::{
     At, AtLeastOne, Fraction, NotNegative, Number, Part, Positive, ResponseTime, Share,
 };
-
-/// Whether an axis slides or turns.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum KindName {
-    Linear,
-    Rotary,
-}
+use crate::axis::AxisKind;
 
 /// An axis: speed, acceleration and mass, each in one of its forms.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AxisTable {
     /// Slides or turns; default: A, B and C turn, all others slide.
-    pub(crate) kind: Option<At<KindName>>,
+    pub(crate) kind: Option<At<AxisKind>>,
     /// Linear: rapid speed in mm/min; caps feeds too.
     pub(crate) rapid_mm_min: Option<Positive>,
     /// Linear: largest speed of the axis in a feed in mm/min; default: none is known.

@@ -4,9 +4,14 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::look_ahead::LookAheadTable;
-use super::path_name::{PathModeName, RapidName};
 use super::printer_table::PrinterTable;
 use super::value::{At, NotNegative, Positive};
+use crate::controller::{
+    ArcRule, ArcWithoutCenter, CompensationCorner, CompensationLead, Lathe, PathMode, Point,
+    PowerOnMotion, RapidJoint, RapidPath, SpindleWait, ToolChange,
+};
+use crate::family::Family;
+use crate::knob::{KnobTarget, KnobUnit};
 
 /// What a controller reads, how it plans, and which words limit it.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -37,12 +42,12 @@ pub(crate) struct ControllerFile {
 pub(crate) struct LanguageTable {
     /// The family of words.
     #[schemars(required)]
-    pub(crate) family: Option<FamilyName>,
+    pub(crate) family: Option<Family>,
     /// The words that G4 takes; if a block has several, the last one here wins.
     #[schemars(required)]
     pub(crate) dwell: Option<Vec<At<DwellTable>>>,
     /// The motion word in force at power-on; default "none".
-    pub(crate) power_on_motion: Option<PowerOnMotionName>,
+    pub(crate) power_on_motion: Option<PowerOnMotion>,
     /// O words as FluidNC has them: a label may serve several branches and loops,
     /// and a break leaves nothing over; default false.
     pub(crate) loose_o_words: Option<bool>,
@@ -54,17 +59,17 @@ pub(crate) struct LanguageTable {
     pub(crate) arc_centre: Option<DistanceName>,
     /// Path mode at power-on.
     #[schemars(required)]
-    pub(crate) power_on: Option<PathModeName>,
+    pub(crate) power_on: Option<PathMode>,
     /// The tolerance of rounded corners at power-on, as P of G64 gives it; default
     /// 0: none.
     pub(crate) power_on_tolerance_mm: Option<NotNegative>,
     /// What G61 selects; default: as at power-on.
-    pub(crate) g61: Option<PathModeName>,
+    pub(crate) g61: Option<PathMode>,
     /// What G61.1 selects; default: as at power-on.
     #[serde(rename = "g61_1")]
-    pub(crate) g61_1: Option<PathModeName>,
+    pub(crate) g61_1: Option<PathMode>,
     /// What G64 selects; default: as at power-on.
-    pub(crate) g64: Option<PathModeName>,
+    pub(crate) g64: Option<PathMode>,
     /// The G word that lets its block end at rest in a mode that blends, such as `G9`;
     /// default: there is none.
     pub(crate) exact_stop_word: Option<At<String>>,
@@ -93,7 +98,7 @@ pub(crate) struct LanguageTable {
     pub(crate) pecks_return_to_r: Option<bool>,
     /// What a block with axes under G2 or G3 is that has neither a centre nor a radius;
     /// default: it is refused.
-    pub(crate) arc_without_center: Option<ArcWithoutCenterName>,
+    pub(crate) arc_without_center: Option<ArcWithoutCenter>,
     /// Whether G53 moves at rapid speed whatever the motion word; default false.
     pub(crate) moves_in_machine_at_rapid: Option<bool>,
     /// How far an arc's end may always be off its circle, in mm: in a program in mm, and
@@ -108,9 +113,9 @@ pub(crate) struct LanguageTable {
     pub(crate) units_kept: Option<bool>,
     /// What a number without a decimal point means; default: what it says,
     /// without a note.
-    pub(crate) decimal_point: Option<PointName>,
+    pub(crate) decimal_point: Option<Point>,
     /// The G codes of a lathe; default: not a lathe.
-    pub(crate) lathe: Option<LatheName>,
+    pub(crate) lathe: Option<Lathe>,
     /// Whether words of X are diameters; default false.
     pub(crate) diameter: Option<bool>,
     /// Whether the words are those of Okuma's OSP; default false.
@@ -127,7 +132,7 @@ pub(crate) struct LanguageTable {
     /// What F means at power-on; default per minute.
     pub(crate) feed: Option<FeedName>,
     /// When the tool changes where M6 stands in a block that moves; default: not known.
-    pub(crate) tool_change: Option<ToolChangeName>,
+    pub(crate) tool_change: Option<ToolChange>,
     /// The axes that M6 sends to their reference points by itself; default: not known.
     pub(crate) tool_change_moves: Option<Vec<At<String>>>,
     /// G12 and G13 mill circular pockets, as on a Haas; default false.
@@ -155,72 +160,13 @@ pub(crate) enum CallBlockName {
 pub(crate) struct CompensationTable {
     /// How the tool gets round outside corners.
     #[schemars(required)]
-    pub(crate) corner: Option<CornerName>,
+    pub(crate) corner: Option<CompensationCorner>,
     /// Where the first move ends and the last begins.
     #[schemars(required)]
-    pub(crate) lead: Option<LeadName>,
+    pub(crate) lead: Option<CompensationLead>,
     /// Blocks without motion in the plane, one after the other, that the
     /// control looks beyond; default 1.
     pub(crate) idle_blocks: Option<u32>,
-}
-
-/// How the tool gets round outside corners: by an arc, or straight on (Fanuc).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum CornerName {
-    Arc,
-    Line,
-}
-
-/// Where the first move under compensation ends: next to its own end (LinuxCNC),
-/// next to the start of the next move (Fanuc's type A), or as at other corners
-/// (type B).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum LeadName {
-    #[serde(alias = "beside")]
-    AtEnd,
-    Perpendicular,
-    Corner,
-}
-
-/// The motion word in force before a program has one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum PowerOnMotionName {
-    /// None: the control refuses a place without one.
-    None,
-    /// G0.
-    Rapid,
-    /// G1.
-    Feed,
-    /// A setting of the control decides between G0 and G1: moves before any motion word count as
-    /// rapids, the fastest of both.
-    Unknown,
-}
-
-/// When the tool changes where M6 stands in a block that moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum ToolChangeName {
-    BeforeMotion,
-    AfterMotion,
-}
-
-/// What a number without a decimal point means.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum PointName {
-    Calculator,
-    LeastIncrement,
-}
-
-/// G-code systems of lathes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-pub(crate) enum LatheName {
-    A,
-    B,
-    C,
 }
 
 /// What F means.
@@ -229,18 +175,6 @@ pub(crate) enum LatheName {
 pub(crate) enum FeedName {
     PerMinute,
     PerRevolution,
-}
-
-/// The family of words.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum FamilyName {
-    Iso,
-    Rs274,
-    Marlin,
-    Isg,
-    Siemens,
-    Nci,
 }
 
 /// A word of G4.
@@ -279,12 +213,12 @@ pub(crate) enum DistanceName {
 pub(crate) struct PlannerTable {
     /// How rapids run, if the machine does not say.
     #[schemars(required)]
-    pub(crate) rapid: Option<RapidName>,
+    pub(crate) rapid: Option<RapidPath>,
     /// How acceleration is shared on arcs; default shared.
-    pub(crate) arc_rule: Option<ArcRuleName>,
+    pub(crate) arc_rule: Option<ArcRule>,
     /// What happens at the ends of rapids where the path mode blends; default
     /// "all", which is the safe one.
-    pub(crate) rapid_joint: Option<RapidJointName>,
+    pub(crate) rapid_joint: Option<RapidJoint>,
     /// Whether the shortest dwell (of no time, or of one whole unit where whole numbers
     /// have a unit of their own) ends the move before it at rest: where feeds blend and
     /// rapids stop, a rapid may then be written as a feed between two such dwells;
@@ -307,7 +241,7 @@ pub(crate) struct PlannerTable {
     pub(crate) joins: Option<Vec<At<String>>>,
     /// What waits for the spindle's speed; default: not known, so that both
     /// cases are counted.
-    pub(crate) spindle_wait: Option<SpindleWaitName>,
+    pub(crate) spindle_wait: Option<SpindleWait>,
     /// The shortest time that a block may last for the control to keep its speed;
     /// default 0.005.
     pub(crate) shortest_block_s: Option<Positive>,
@@ -316,33 +250,6 @@ pub(crate) struct PlannerTable {
     pub(crate) shortest_at_feed_s: Option<NotNegative>,
     /// How corners are run through; default: not modelled.
     pub(crate) look_ahead: Option<At<LookAheadTable>>,
-}
-
-/// What waits for the spindle's speed: nothing, moves that cut, or whatever
-/// comes after M3, M4 and S.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum SpindleWaitName {
-    Nothing,
-    Feeds,
-    Blocks,
-}
-
-/// How acceleration is shared on arcs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum ArcRuleName {
-    Shared,
-    LinuxCnc,
-}
-
-/// Whether rapids are blended with their neighbours.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum RapidJointName {
-    Stop,
-    Rapids,
-    All,
 }
 
 /// How a rapid's speed can be lowered besides the knobs.
@@ -365,7 +272,7 @@ pub(crate) struct KnobTable {
     pub(crate) word: Option<At<String>>,
     /// What it acts on.
     #[schemars(required)]
-    pub(crate) target: Option<TargetName>,
+    pub(crate) target: Option<KnobTarget>,
     /// What stands after it: `= value`, a value per axis, the same with the axis in brackets
     /// (`ACC[X]=70`), the path's value after a letter, or right after the word, or the number
     /// of an analog output ([outputs] of the machine file) with its value.
@@ -375,7 +282,7 @@ pub(crate) struct KnobTable {
     pub(crate) letters: Option<At<Vec<At<String>>>>,
     /// Unit of the value.
     #[schemars(required)]
-    pub(crate) unit: Option<UnitName>,
+    pub(crate) unit: Option<KnobUnit>,
     /// Smallest step of a value that is written.
     #[schemars(required)]
     pub(crate) step: Option<Positive>,
@@ -397,20 +304,6 @@ pub(crate) struct KnobTable {
     pub(crate) wait: Option<String>,
 }
 
-/// What a knob acts on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum TargetName {
-    FeedAccel,
-    RapidAccel,
-    Accel,
-    Jerk,
-    RapidSpeed,
-    Speed,
-    SpeedShare,
-    CruiseRatio,
-}
-
 /// What stands after a knob's word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -422,27 +315,4 @@ pub(crate) enum ArgumentName {
     Path,
     Output,
     Value,
-}
-
-/// Unit of a knob's value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum UnitName {
-    Percent,
-    PerSecondSquared,
-    PerSecond,
-    PerMinute,
-    Share,
-}
-
-/// What an arc without a centre and a radius is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum ArcWithoutCenterName {
-    /// A straight line to its end, at F.
-    Line,
-    /// A line or an alarm, as a parameter of the control says: it counts as a line.
-    LineOrAlarm,
-    /// An alarm.
-    Refused,
 }

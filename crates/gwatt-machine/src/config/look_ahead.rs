@@ -60,7 +60,7 @@ pub(crate) struct DeviationTable {
     #[schemars(required)]
     pub(crate) deviation_mm: Option<Positive>,
     /// Which directions make the angle; default all axes.
-    pub(crate) angle: Option<AngleName>,
+    pub(crate) angle: Option<CornerAngle>,
     /// Whether the axes' limits in the direction of the corner count, not the
     /// block's acceleration; default false.
     pub(crate) per_axis: Option<bool>,
@@ -70,14 +70,6 @@ pub(crate) struct DeviationTable {
     /// Blocks shorter than this also keep to the circle that they are chords
     /// of; default 0: none do.
     pub(crate) small_block_mm: Option<NotNegative>,
-}
-
-/// Which directions make the angle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum AngleName {
-    AllAxes,
-    Linear,
 }
 
 /// Klipper's square corner velocity.
@@ -297,11 +289,7 @@ fn deviation(table: &DeviationTable, base: Option<&CornerRule>) -> Option<Corner
     };
     Some(CornerRule::JunctionDeviation {
         deviation_mm: table.deviation_mm.as_ref()?.value,
-        angle: match table.angle {
-            Some(AngleName::Linear) => CornerAngle::Linear,
-            Some(AngleName::AllAxes) => CornerAngle::AllAxes,
-            None => angle,
-        },
+        angle: table.angle.unwrap_or(angle),
         per_axis: table.per_axis.unwrap_or(per_axis),
         block_accel: table.block_accel.unwrap_or(block_accel),
         small_block_mm: or(table.small_block_mm.as_ref(), small),

@@ -4,18 +4,13 @@
 //! in one way only, is checked where the machine is assembled, so that all
 //! mistakes of a file are reported at once.
 
-use super::path_name::{PathModeName, RapidName};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 pub(crate) use super::axis_table::{
-    AxisTable, CorrectionTable, ForcePointTable, KindName, ResponseTable, RootTable,
-    TorquePointTable,
+    AxisTable, CorrectionTable, ForcePointTable, ResponseTable, RootTable, TorquePointTable,
 };
-use super::controller_file::{
-    ArcWithoutCenterName, CompensationTable, DistanceName, PointName, PowerOnMotionName,
-    ToolChangeName, UnitsName,
-};
+use super::controller_file::{CompensationTable, DistanceName, UnitsName};
 use super::levels::LevelsTable;
 use super::look_ahead::LookAheadTable;
 use super::offsets::OffsetsTable;
@@ -25,6 +20,7 @@ use super::value::{
     At, AtLeastOne, Fraction, Letter, NotNegative, Number, OneOrMany, Part, PerAxis, Positive,
     RapidPercent, ResponseTime, Share,
 };
+use crate::controller::{ArcWithoutCenter, PathMode, Point, PowerOnMotion, RapidPath, ToolChange};
 
 /// A machine whose drives share a power converter.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -144,9 +140,9 @@ pub(crate) struct OverloadTable {
 #[serde(deny_unknown_fields)]
 pub(crate) struct PathTable {
     /// `exact-stop` overrides the program's G64; absent: the controller's mode.
-    pub(crate) mode: Option<PathModeName>,
+    pub(crate) mode: Option<PathMode>,
     /// Straight rapids, or each axis for itself; absent: the controller's.
-    pub(crate) rapid: Option<RapidName>,
+    pub(crate) rapid: Option<RapidPath>,
     /// Over how long the drives spread a step of speed at a corner, in s; default
     /// 0.01, or what follows for axes that give `position_gain_1_s`.
     pub(crate) response_time_s: Option<ResponseTime>,
@@ -192,18 +188,18 @@ pub(crate) struct OwnLanguageTable {
     /// the speeds of homing; where they end is not known (Klipper: `[safe_z_home]`).
     pub(crate) home_moves: Option<At<Vec<Vec<At<Letter>>>>>,
     /// What a number without a decimal point means.
-    pub(crate) decimal_point: Option<PointName>,
+    pub(crate) decimal_point: Option<Point>,
     /// Whether words of X are diameters.
     pub(crate) diameter: Option<bool>,
     /// The motion word in force at power-on (Fanuc: parameter 3402 bit G01; SINUMERIK: machine
     /// data 20150).
-    pub(crate) power_on_motion: Option<PowerOnMotionName>,
+    pub(crate) power_on_motion: Option<PowerOnMotion>,
     /// The F in force at power-on, in mm/min (SINUMERIK: setting data 42110): where moves come
     /// before any F, none above it is written for them.
     pub(crate) power_on_feed_mm_min: Option<Positive>,
     /// Whether the tool changes before or after the motion of a block that has M6 in it, which
     /// the builder of the machine decides on many controls.
-    pub(crate) tool_change: Option<ToolChangeName>,
+    pub(crate) tool_change: Option<ToolChange>,
     /// The axes that M6 sends to their reference points by itself, such as \["Z"\]; \[\] where it
     /// moves none.
     pub(crate) tool_change_moves: Option<Vec<At<String>>>,
@@ -225,7 +221,7 @@ pub(crate) struct OwnLanguageTable {
     pub(crate) arc_centre: Option<DistanceName>,
     /// What a block with axes under G2 or G3 is that has neither a centre nor a radius (Fanuc:
     /// parameter 3403 bit CIR); default: as the profile says.
-    pub(crate) arc_without_center: Option<ArcWithoutCenterName>,
+    pub(crate) arc_without_center: Option<ArcWithoutCenter>,
     /// How many times as fast as the way in the return of a rigid tap is (Haas: Setting 130;
     /// Fanuc: parameter 5211, as a factor; Mitsubishi: #1172); default 1.
     pub(crate) tap_return_factor: Option<AtLeastOne>,

@@ -22,7 +22,6 @@ mod levels;
 mod load;
 mod look_ahead;
 mod machine_file;
-mod path_name;
 mod named_knob;
 mod offsets;
 mod outputs;

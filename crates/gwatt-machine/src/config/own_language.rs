@@ -18,13 +18,10 @@ pub(crate) fn take(
 ) {
     let own = &table.value;
     let dialect = &mut language.dialect;
-    dialect.point = own.decimal_point.map(profile::point).or(dialect.point);
+    dialect.point = own.decimal_point.or(dialect.point);
     dialect.point_is_known = own.decimal_point.is_some();
     dialect.diameter = own.diameter.unwrap_or(dialect.diameter);
-    language.tool_change = own
-        .tool_change
-        .map(profile::tool_change)
-        .or(language.tool_change);
+    language.tool_change = own.tool_change.or(language.tool_change);
     if let Some(axes) = &own.tool_change_moves {
         language.tool_change_moves = Some(listed_words::axes_named(findings, axes));
     }
@@ -39,13 +36,13 @@ pub(crate) fn take(
     language.groove_return_mm = given(&own.groove_return_mm);
     language.type_2_as_type_1 = own.type_2_as_type_1 == Some(true);
     if let Some(arc) = own.arc_without_center {
-        language.arc_without_center = profile::arc_without_center(arc);
+        language.arc_without_center = arc;
     }
     if let Some(factor) = &own.tap_return_factor {
         language.tap_return_factor = Some(factor.value);
     }
     if let Some(motion) = own.power_on_motion {
-        language.power_on_motion = profile::power_on_motion(motion);
+        language.power_on_motion = motion;
     }
     if let Some(feed) = &own.power_on_feed_mm_min {
         language.power_on_feed_mm_s = feed.value / SECONDS_PER_MINUTE;

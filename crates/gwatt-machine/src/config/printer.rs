@@ -1,13 +1,14 @@
 //! `[language.printer]`: what 3D printers differ in.
 
-use super::printer_table::{ExtruderModeName, RetractTable, SpeedCapName};
+use super::printer_table::{RetractTable, SpeedCapName};
 
-use super::controller_file::{FamilyName, LanguageTable};
+use super::controller_file::LanguageTable;
 use super::findings::Findings;
 use super::one_letter::one_letter;
 use super::value::{At, Letter};
 use super::word;
 use crate::axis::AxisSet;
+use crate::family::Family;
 use crate::printer::{Command, ExtruderMode, Printer, Retract};
 use crate::units::SECONDS_PER_MINUTE;
 
@@ -19,7 +20,7 @@ pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> 
     };
     if language
         .family
-        .is_some_and(|family| family != FamilyName::Marlin)
+        .is_some_and(|family| family != Family::Marlin)
     {
         let message = "`printer` belongs to family = \"marlin\"";
         findings.error("machine-kind", &at.span, message, None);
@@ -31,11 +32,7 @@ pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> 
     }
     let together = table.home_together.as_ref();
     Printer {
-        extruder_mode: match table.extruder_mode {
-            None | Some(ExtruderModeName::Follows) => ExtruderMode::Follows,
-            Some(ExtruderModeName::Own) => ExtruderMode::Own,
-            Some(ExtruderModeName::Either) => ExtruderMode::Either,
-        },
+        extruder_mode: table.extruder_mode.unwrap_or(ExtruderMode::Follows),
         several_commands: table.several_commands.unwrap_or(own.several_commands),
         early_limits: table.early_limits.unwrap_or(own.early_limits),
         height_map: table.height_map.unwrap_or(own.height_map),

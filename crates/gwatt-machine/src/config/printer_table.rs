@@ -1,6 +1,7 @@
 //! What a profile says of a printer.
 
 use super::value::{At, Letter, NotNegative, Number, Positive};
+use crate::printer::ExtruderMode;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -9,7 +10,7 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 pub(crate) struct PrinterTable {
     /// What G90 and G91 mean for the extruder; default "follows".
-    pub(crate) extruder_mode: Option<ExtruderModeName>,
+    pub(crate) extruder_mode: Option<ExtruderMode>,
     /// Whether a line may hold several commands; default false.
     pub(crate) several_commands: Option<bool>,
     /// Whether limits that the program sets (M201, M203, M204) may act on the move before them
@@ -60,15 +61,6 @@ pub(crate) struct PrinterTable {
     /// Commands that shift the coordinates: the next move of an axis counts at
     /// full speed and acceleration.
     pub(crate) shifts: Option<Vec<At<String>>>,
-}
-
-/// What G90 and G91 mean for the extruder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum ExtruderModeName {
-    Follows,
-    Own,
-    Either,
 }
 
 /// Unit of M203.

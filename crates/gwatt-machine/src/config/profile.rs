@@ -1,27 +1,22 @@
 //! The profile's structs to the controller.
 
 use super::controller_file::{
-    ArcRuleName, ArcWithoutCenterName, ArgumentName, CallBlockName, CompensationTable,
-    ControllerFile, CornerName, DistanceName, DwellTable, FamilyName, FeedName, KnobTable,
-    LanguageTable, LatheName, LeadName, PlannerTable, PointName, PowerOnMotionName, RapidJointName,
-    RapidKnobName, SpindleWaitName, TargetName, ToolChangeName, UnitName, UnitsName,
+    ArgumentName, CallBlockName, CompensationTable, ControllerFile, DistanceName, DwellTable,
+    FeedName, KnobTable, LanguageTable, PlannerTable, RapidKnobName, UnitsName,
 };
 use super::findings::Findings;
 use super::listed_words::{axes_named, ignored};
 use super::look_ahead::look_ahead;
 use super::named_knob;
 use super::one_letter::one_letter;
-use super::path_name::{path_mode, rapid_path};
 use super::printer::command;
 use super::value::At;
 use super::word;
 use crate::axis::AxisId;
 use crate::controller::{
-    ArcRule, ArcWithoutCenter, CompensationCorner, CompensationLead, Controller,
-    CutterCompensation, Dialect, Language, Lathe, Planner, Point, PowerOnMotion, RapidJoint,
-    RapidKnob, RapidPath, SpindleWait, ToolChange,
+    ArcRule, ArcWithoutCenter, Controller, CutterCompensation, Dialect, Language, Planner,
+    PowerOnMotion, RapidJoint, RapidKnob, RapidPath, SpindleWait,
 };
-use crate::family::Family;
 use crate::knob::{Knob, KnobArgument, KnobTarget, KnobUnit};
 use crate::queue::{MESSAGE, MESSAGES, Queue, QueueEffect, QueueWord};
 use crate::units::SECONDS_PER_MINUTE;
@@ -60,15 +55,8 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
     let dwell = dwell(findings, table);
     let ignored_words = table.ignored.as_deref().unwrap_or_default();
     let (ignored_g, ignored_m) = ignored(findings, ignored_words);
-    let power_on = path_mode(table.power_on?);
-    let family = match table.family? {
-        FamilyName::Iso => Family::Iso,
-        FamilyName::Rs274 => Family::Rs274,
-        FamilyName::Marlin => Family::Marlin,
-        FamilyName::Isg => Family::Isg,
-        FamilyName::Siemens => Family::Siemens,
-        FamilyName::Nci => Family::Nci,
-    };
+    let power_on = table.power_on?;
+    let family = table.family?;
     Some(Language {
         name: String::new(),
         family,
@@ -77,24 +65,22 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
             .power_on_feed_mm_min
             .as_ref()
             .map_or(f64::INFINITY, |it| it.value / SECONDS_PER_MINUTE),
-        power_on_motion: table
-            .power_on_motion
-            .map_or(PowerOnMotion::None, power_on_motion),
+        power_on_motion: table.power_on_motion.unwrap_or(PowerOnMotion::None),
         loose_o_words: table.loose_o_words.unwrap_or(false),
         metric: table.units != Some(UnitsName::Inch),
         units_kept: table.units_kept.unwrap_or(false),
         absolute: table.distance != Some(DistanceName::Incremental),
         arc_absolute: table.arc_centre == Some(DistanceName::Absolute),
-        g61: table.g61.map_or(power_on, path_mode),
-        g61_1: table.g61_1.map_or(power_on, path_mode),
-        g64: table.g64.map_or(power_on, path_mode),
+        g61: table.g61.unwrap_or(power_on),
+        g61_1: table.g61_1.unwrap_or(power_on),
+        g64: table.g64.unwrap_or(power_on),
         power_on_mode: power_on,
         power_on_tolerance_mm: table
             .power_on_tolerance_mm
             .as_ref()
             .map_or(0.0, |tolerance| tolerance.value),
         exact_stop_word: exact_stop_word(findings, table),
-        tool_change: table.tool_change.map(tool_change),
+        tool_change: table.tool_change,
         tool_change_moves: table
             .tool_change_moves
             .as_deref()
@@ -113,8 +99,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         escape_mm: None,
         groove_return_mm: None,
         type_2_as_type_1: false,
-        arc_without_center: (table.arc_without_center)
-            .map_or(ArcWithoutCenter::Refused, arc_without_center),
+        arc_without_center: (table.arc_without_center).unwrap_or(ArcWithoutCenter::Refused),
         tap_return_factor: None,
         moves_in_machine_at_rapid: table.moves_in_machine_at_rapid.unwrap_or(false),
         arc_tolerance_mm: table
@@ -127,14 +112,6 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
             .unwrap_or_else(|| family.facts().kept_variables.into_iter().collect()),
         dialect: dialect(table),
     })
-}
-
-pub(crate) fn arc_without_center(name: ArcWithoutCenterName) -> ArcWithoutCenter {
-    match name {
-        ArcWithoutCenterName::Line => ArcWithoutCenter::Line,
-        ArcWithoutCenterName::LineOrAlarm => ArcWithoutCenter::LineOrAlarm,
-        ArcWithoutCenterName::Refused => ArcWithoutCenter::Refused,
-    }
 }
 
 /// The word for exact stop in one block.
@@ -152,15 +129,8 @@ fn exact_stop_word(findings: &mut Findings<'_>, table: &LanguageTable) -> Option
 /// How G41 and G42 shift the path.
 pub(crate) fn compensation(table: &CompensationTable) -> Option<CutterCompensation> {
     Some(CutterCompensation {
-        corner: match table.corner? {
-            CornerName::Arc => CompensationCorner::Arc,
-            CornerName::Line => CompensationCorner::Line,
-        },
-        lead: match table.lead? {
-            LeadName::AtEnd => CompensationLead::AtEnd,
-            LeadName::Perpendicular => CompensationLead::Perpendicular,
-            LeadName::Corner => CompensationLead::Corner,
-        },
+        corner: table.corner?,
+        lead: table.lead?,
         idle_blocks: table.idle_blocks.unwrap_or(1),
     })
 }
@@ -172,14 +142,10 @@ fn dialect(table: &LanguageTable) -> Dialect {
     };
     let mut dialect = Dialect {
         active: false,
-        point: table.decimal_point.map(point),
+        point: table.decimal_point,
         point_is_known: false,
         dwell_whole: table.dwell.iter().flatten().filter_map(whole).collect(),
-        lathe: table.lathe.map(|lathe| match lathe {
-            LatheName::A => Lathe::A,
-            LatheName::B => Lathe::B,
-            LatheName::C => Lathe::C,
-        }),
+        lathe: table.lathe,
         diameter: table.diameter.unwrap_or(false),
         osp: table.osp.unwrap_or(false),
         other_m: table.other_m.unwrap_or(false),
@@ -195,31 +161,6 @@ fn dialect(table: &LanguageTable) -> Dialect {
     };
     dialect.active = dialect != Dialect::default();
     dialect
-}
-
-/// When the tool changes, of its name.
-pub(crate) fn power_on_motion(name: PowerOnMotionName) -> PowerOnMotion {
-    match name {
-        PowerOnMotionName::None => PowerOnMotion::None,
-        PowerOnMotionName::Rapid => PowerOnMotion::Rapid,
-        PowerOnMotionName::Feed => PowerOnMotion::Feed,
-        PowerOnMotionName::Unknown => PowerOnMotion::Unknown,
-    }
-}
-
-pub(crate) fn tool_change(name: ToolChangeName) -> ToolChange {
-    match name {
-        ToolChangeName::BeforeMotion => ToolChange::BeforeMotion,
-        ToolChangeName::AfterMotion => ToolChange::AfterMotion,
-    }
-}
-
-/// What a number without a point means, of its name.
-pub(crate) fn point(name: PointName) -> Point {
-    match name {
-        PointName::Calculator => Point::Calculator,
-        PointName::LeastIncrement => Point::LeastIncrement,
-    }
 }
 
 fn dwell(findings: &mut Findings<'_>, table: &LanguageTable) -> Vec<(u8, f64)> {
@@ -242,23 +183,11 @@ fn dwell(findings: &mut Findings<'_>, table: &LanguageTable) -> Vec<(u8, f64)> {
 
 fn planner(findings: &mut Findings<'_>, table: &PlannerTable) -> Option<Planner> {
     Some(Planner {
-        rapid: rapid_path(table.rapid?),
-        arc_rule: match table.arc_rule {
-            Some(ArcRuleName::LinuxCnc) => ArcRule::LinuxCnc,
-            Some(ArcRuleName::Shared) | None => ArcRule::Shared,
-        },
-        rapid_joint: match table.rapid_joint {
-            Some(RapidJointName::Stop) => RapidJoint::Stop,
-            Some(RapidJointName::Rapids) => RapidJoint::Rapids,
-            Some(RapidJointName::All) | None => RapidJoint::All,
-        },
+        rapid: table.rapid?,
+        arc_rule: table.arc_rule.unwrap_or(ArcRule::Shared),
+        rapid_joint: table.rapid_joint.unwrap_or(RapidJoint::All),
         dwell_stops: table.dwell_stops.unwrap_or(false),
-        spindle_wait: match table.spindle_wait {
-            None => SpindleWait::Unknown,
-            Some(SpindleWaitName::Nothing) => SpindleWait::Nothing,
-            Some(SpindleWaitName::Feeds) => SpindleWait::Feeds,
-            Some(SpindleWaitName::Blocks) => SpindleWait::Blocks,
-        },
+        spindle_wait: table.spindle_wait.unwrap_or(SpindleWait::Unknown),
         shortest_block_s: table.shortest_block_s.as_ref().map_or(0.005, |it| it.value),
         shortest_at_feed_s: table.shortest_at_feed_s.as_ref().map_or(0.0, |it| it.value),
         look_ahead: look_ahead(findings, table.look_ahead.as_ref()),
@@ -312,9 +241,7 @@ fn rapid_knob(findings: &mut Findings<'_>, table: &PlannerTable) -> RapidKnob {
         return RapidKnob::None;
     };
     // Where the machine's rapids are independent, it takes the knob away.
-    if knob.value == RapidKnobName::G1
-        && table.rapid.map(rapid_path) == Some(RapidPath::Independent)
-    {
+    if knob.value == RapidKnobName::G1 && table.rapid == Some(RapidPath::Independent) {
         let message = "`rapid_knob` = \"g1\" with independent rapids changes the path";
         let help = Some("a feed is straight; use \"none\"".to_owned());
         findings.error("machine-value", &knob.span, message, help);
@@ -322,29 +249,10 @@ fn rapid_knob(findings: &mut Findings<'_>, table: &PlannerTable) -> RapidKnob {
     RapidKnob::G1
 }
 
-fn target_of(name: TargetName) -> KnobTarget {
-    match name {
-        TargetName::FeedAccel => KnobTarget::FeedAccel,
-        TargetName::RapidAccel => KnobTarget::RapidAccel,
-        TargetName::Accel => KnobTarget::Accel,
-        TargetName::Jerk => KnobTarget::Jerk,
-        TargetName::RapidSpeed => KnobTarget::RapidSpeed,
-        TargetName::Speed => KnobTarget::Speed,
-        TargetName::SpeedShare => KnobTarget::SpeedShare,
-        TargetName::CruiseRatio => KnobTarget::CruiseRatio,
-    }
-}
-
 fn knob(findings: &mut Findings<'_>, table: &At<KnobTable>) -> Option<Knob> {
     let knob = &table.value;
-    let target = target_of(knob.target?);
-    let unit = match knob.unit? {
-        UnitName::Percent => KnobUnit::Percent,
-        UnitName::PerSecondSquared => KnobUnit::PerSecondSquared,
-        UnitName::PerSecond => KnobUnit::PerSecond,
-        UnitName::PerMinute => KnobUnit::PerMinute,
-        UnitName::Share => KnobUnit::Share,
-    };
+    let target = knob.target?;
+    let unit = knob.unit?;
     let argument = argument(findings, knob)?;
     let output = argument == KnobArgument::Output(0);
     let read_back = named_knob::is_read_back(knob.word.as_ref()?, &argument, target, unit);
