@@ -126,6 +126,18 @@ fn taps_return_faster_and_peck() {
     let program = "S500 M3\nG0 Z10.\nG99 G84 X5. Z-5. R2. F500.\nX10. Q3.\nG80\n";
     let faster = machine("fanuc", "[language]\ntap_return_factor = 2\n");
     assert_snapshot!(moves_on(&faster, program), @r"
+    2 rapid Z10.0000
+    3 rapid X5.0000
+    3 rapid Z2.0000
+    3 tap Z-5.0000 F500.0000
+    3 tap Z2.0000 F1000.0000
+    4 rapid X10.0000
+    4 tap Z-1.0000 F500.0000
+    4 tap Z2.0000 F1000.0000
+    4 tap Z-4.0000 F500.0000
+    4 tap Z2.0000 F1000.0000
+    4 tap Z-5.0000 F500.0000
+    4 tap Z2.0000 F1000.0000
     ");
     assert!(notes("fanuc", program).contains(&"tap-return"));
     assert!(notes("fanuc", program).contains(&"tap-pecks"));

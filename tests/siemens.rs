@@ -454,6 +454,9 @@ fn diam90_halves_places_and_no_increments() {
     let arcs = "G18 G90 DIAM90 F100\nG0 Z36 X13.8441\nG3 Z37.6614 X15.5951 K=AC(36.096) I=AC(17.5082)\n\
                 G3 Z37.6614 X15.5951 K=AC(36.096) I=IC(0.9566)\n";
     assert_snapshot!(moves(arcs), @r"
+    2 rapid X6.9221 Z36
+    3 arc X7.7976 Z37.6614 center 36.096,8.7541 turns 0.171 F100
+    4 arc X7.7976 Z37.6614 center 36.096,8.7542 turns 1 F100
     ");
     let read = values("DIAM90 X50\nR1=$AA_IW[X]\nG91\nR2=$AA_IW[X]\nDIAMOF G90 X=R1+R2\n");
     assert_eq!(read, [25.0, 100.0]);

@@ -86,6 +86,17 @@ fn fanuc_pecks_taps_and_bores() {
 fn without_r_a_hole_begins_where_it_is_called() {
     let program = "G90 G0 Z10\nG99 G81 X1 Z-3 F100\nX2 R2\nG80\nG81 X3 Z-3\n";
     assert_snapshot!(moves("iso", program), @r"
+    1 rapid 0 0 10
+    2 rapid 1 0 10
+    2 feed 1 0 -3 F100
+    2 rapid 1 0 10
+    3 rapid 2 0 10
+    3 rapid 2 0 2
+    3 feed 2 0 -3 F100
+    3 rapid 2 0 2
+    5 rapid 3 0 2
+    5 feed 3 0 -3 F100
+    5 rapid 3 0 2
     ");
 }
 

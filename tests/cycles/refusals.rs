@@ -80,7 +80,6 @@ fn each_refusal_once() {
     ");
     let mut all = String::new();
     for program in [
-        "G81 X1 Z-1",
         "G81 X1 R1",
         "G83 X1 Z-1 R1",
         "G76 X1 Z-1 R1",
@@ -93,7 +92,6 @@ fn each_refusal_once() {
         all += &moves("iso", &format!("{SPINDLE}G0 X0\n{program}\n"));
     }
     assert_snapshot!(all, @r"
-    3 cycle-word: G81 without R | write R in the first block of the cycle
     3 cycle-word: G81 without Z | write Z in the first block of the cycle
     3 cycle-word: G83 without Q | write Q in the first block of the cycle
     3 cycle-word: G76 without Q, or I and J | write Q, or I and J in the first block of the cycle

@@ -7,6 +7,11 @@ use super::moves;
 #[test]
 fn a_retraction_plane_may_be_the_reference_plane() {
     assert_snapshot!(moves("G0 X5 Z5 F200\nCYCLE82(3,3,,-1,,1)\n"), @r"
+    1 rapid X5 Z5
+    2 rapid Z3
+    2 feed Z-1 F200
+    2 dwell 1 s
+    2 rapid Z3
     ");
 }
 

@@ -49,9 +49,7 @@ impl Control<'_> {
                 continue;
             };
             if kind == ActionKind::End && self.is_grbl() {
-                run.act(ActionKind::Stop, f64::from(number) / 10.0);
-                self.begin_again(run);
-                continue;
+                self.leave_modes(run);
             }
             self.ended |= kind == ActionKind::End;
             run.act(kind, f64::from(number) / 10.0);

@@ -36,20 +36,18 @@ impl Control<'_> {
         self.rules.macros == Macros::OWords && self.machine.controller.language.loose_o_words
     }
 
-    /// After M2 and M30 it executes what comes: under the modes that these leave (`gcode.c`,
+    /// M2 and M30 leave these modes, under which it executes what comes after them (`gcode.c`,
     /// "Program flow").
-    pub(super) fn begin_again(&mut self, run: &mut Run<'_, '_>) {
+    pub(super) fn leave_modes(&mut self, run: &mut Run<'_, '_>) {
         let modal = &mut self.modal;
         (modal.motion, modal.plane, modal.absolute) = (Motion::Linear, [0, 1, 2], true);
         (modal.feed_mode, modal.feed_mode_word) = (FeedMode::PerMinute, 940);
         let whole = run.whole();
         self.select_system(1, whole, run);
         self.special.turn_spindle(50);
-        for (kind, number) in [(ActionKind::Spindle, 50), (ActionKind::Coolant, 90)] {
-            let value = f64::from(number) / 10.0;
-            self.switch_loads(value);
+        for number in [50, 90] {
+            self.switch_loads(f64::from(number) / 10.0);
             self.switches.switch(number);
-            run.act(kind, value);
         }
         // grblHAL: "the end of a program restores" its profile of accelerations.
         for knob in &self.machine.controller.knobs {
@@ -58,7 +56,6 @@ impl Control<'_> {
                 run.facts.turns_knob = true;
             }
         }
-        run.facts.boundary = true;
     }
 
     /// Whether a line is a command of grbl.

@@ -14,6 +14,10 @@ impl Control<'_> {
 
     fn skips(&mut self, block: &Block, report: &mut Report<'_, '_>) -> bool {
         let all = Span::new(0, block.text_end as usize);
+        if self.ended && self.is_grbl() && !block.tape {
+            // It goes on with what comes.
+            self.ended = block.words.is_empty() && block.issues.is_empty();
+        }
         if self.ended {
             if !(block.tape || block.words.is_empty() && block.issues.is_empty()) {
                 report.note_once(
@@ -26,7 +30,7 @@ impl Control<'_> {
         }
         if block.tape && !self.rules.percent_names_programs {
             // The first `%` opens the tape; one after any block ends it.
-            self.ended = self.begun && !self.is_grbl();
+            self.ended = self.begun;
             return true;
         }
         if block.delete_level == 0 {

@@ -16,6 +16,8 @@ pub(super) struct Held {
     pub(super) dwell_s: Option<f64>,
     /// Depth of a peck, or the shift of G76 and G87, as it was written.
     pub(super) q: Option<f64>,
+    /// Depth of a peck of a tap, as it was written.
+    pub(super) tap_q: Option<f64>,
     /// I, J, K as they were written.
     pub(super) ijk: [Option<f64>; 3],
     /// The level at which the series of cycles began.

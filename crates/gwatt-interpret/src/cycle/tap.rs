@@ -14,8 +14,8 @@ impl Control<'_> {
         if self.rules.cycle_levels_by_m {
             return None;
         }
-        self.special.held.q = self.cycle_q(None, run).or(self.special.held.q);
-        let q = self.special.held.q.filter(|q| *q != 0.0)?;
+        self.special.held.tap_q = self.cycle_q(None, run).or(self.special.held.tap_q);
+        let q = self.special.held.tap_q.filter(|q| *q != 0.0)?;
         let message = "whether a tap in pecks goes back to R or by a parameter, that parameter says: \
                        it counts as back to R, which takes longer";
         let whole = run.whole();

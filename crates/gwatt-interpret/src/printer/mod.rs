@@ -12,6 +12,7 @@ mod command;
 mod early;
 mod heat;
 mod kept;
+mod left_out;
 mod line;
 mod named;
 mod optional;

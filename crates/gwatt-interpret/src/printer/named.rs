@@ -4,8 +4,8 @@
 //! `while`, `var` and the like at the beginning of a line (Duet documentation,
 //! "Meta commands"); they are refused by name.
 
-use super::command::{note_advance, note_levelling};
 use super::kept::Back;
+use super::left_out::{note_advance, note_levelling};
 use super::line::{Parameters, Text};
 use crate::control::{Control, Run};
 use crate::flow::library;
@@ -68,7 +68,7 @@ impl Control<'_> {
         }
     }
 
-    /// Tells apart whether the axes move on at a command.
+    /// Reports a command, by whether the axes move on at it.
     fn act_by_name(&self, run: &mut Run<'_, '_>, name: &[u8]) {
         let kind = match self.machine.controller.queue.effect_of_name(name) {
             Some(QueueEffect::Stop) => ActionKind::Rest,

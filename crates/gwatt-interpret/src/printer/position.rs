@@ -1,6 +1,6 @@
 //! Moves that a firmware makes of itself: homing, probing, tool changes.
 
-use super::command::note_levelling;
+use super::left_out::note_levelling;
 use super::line::Parameters;
 use crate::control::{Control, Run};
 use crate::places::EXTRUDER;

@@ -20,7 +20,9 @@ impl Ahead {
         planned: &Planned<u64>,
     ) -> Option<Demand> {
         let in_doubt = |number| self.open.get(number).is_some_and(|own| own.in_doubt);
-        let slower = self.reach2.is_some() || moves_of(planned).any(in_doubt);
+        // S-curves have the robust bound, of axes that keep their limits at joints too.
+        let slower =
+            planned.section.is_none() && (self.reach2.is_some() || moves_of(planned).any(in_doubt));
         if !(planned.ranged || slower) {
             return None;
         }
@@ -32,10 +34,6 @@ impl Ahead {
             section: None,
         };
         self.follow_surge(model, planned, &surge);
-        // S-curves have the robust bound, but for steps of speed at joints.
-        if planned.section.is_some() && !planned.ranged {
-            return None;
-        }
         self.watch_surge(model, observer, planned, Some(&surge), true);
         let open = self.open.get(planned.tag)?;
         let want = Want {
