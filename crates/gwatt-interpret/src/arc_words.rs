@@ -25,19 +25,24 @@ pub(super) fn lone_arc(run: &mut Run<'_, '_>) {
 }
 
 impl Control<'_> {
-    pub(super) fn arc(&mut self, run: &mut Run<'_, '_>) {
+    /// Whether an arc without a centre and a radius stands for a line.
+    fn is_line(&self, run: &mut Run<'_, '_>) -> bool {
         let shape = bit(b'I') | bit(b'J') | bit(b'K') | bit(b'R');
         let otherwise = self.machine.controller.language.arc_without_center;
-        if otherwise != ArcWithoutCenter::Refused
+        let line = otherwise != ArcWithoutCenter::Refused
             && run.words.unused & shape == 0
-            && run.words.has_axes()
-        {
-            if otherwise == ArcWithoutCenter::LineOrAlarm {
-                let message = "an arc without a centre and a radius: a line to its end, if no alarm \
-                               (Fanuc: parameter 3403 bit CIR)";
-                let span = run.whole();
-                run.report.note_once("arc-as-line", message, span);
-            }
+            && run.words.has_axes();
+        if line && otherwise == ArcWithoutCenter::LineOrAlarm {
+            let message = "an arc without a centre and a radius: a line to its end, if no alarm \
+                           (Fanuc: parameter 3403 bit CIR)";
+            let span = run.whole();
+            run.report.note_once("arc-as-line", message, span);
+        }
+        line
+    }
+
+    pub(super) fn arc(&mut self, run: &mut Run<'_, '_>) {
+        if self.is_line(run) {
             run.facts.fixed = Some("it is a line under G2 or G3, without a centre");
             return self.straight(run);
         }
