@@ -147,6 +147,8 @@ mod tests {
             ("#<_Depth>=3", "#<_depth>=3"),
             ("r1=4", "R1=4"),
             ("vc12=0.5", "VC12=0.5"),
+            ("_feed2=5", "_FEED2=5"),
+            ("Rough=6", "ROUGH=6"),
         ] {
             assert_eq!(text.parse::<GivenVariable>().unwrap().to_string(), shown);
         }
@@ -158,7 +160,7 @@ mod tests {
             ("#0=1", "no variable with its value"),
             ("#x=1", "no variable with its value"),
             ("X=1", "no variable with its value"),
-            ("VX1=1", "no variable with its value"),
+            ("X1=1", "no variable with its value"),
             ("R=1", "no variable with its value"),
             ("#<depth>=1", "belongs to a subroutine"),
         ] {
