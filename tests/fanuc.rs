@@ -134,9 +134,9 @@ fn taps_return_faster_and_peck() {
     4 rapid X10.0000
     4 tap Z-1.0000 F500.0000
     4 tap Z2.0000 F1000.0000
-    4 tap Z-4.0000 F500.0000
+    4 tap Z-4.0000 F1000.0000
     4 tap Z2.0000 F1000.0000
-    4 tap Z-5.0000 F500.0000
+    4 tap Z-5.0000 F1000.0000
     4 tap Z2.0000 F1000.0000
     ");
     assert!(notes("fanuc", program).contains(&"tap-return"));

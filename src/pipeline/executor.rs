@@ -203,7 +203,7 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
         let Some(flow) = &mut self.flow else {
             return Ok(None);
         };
-        if self.stuck || self.interpreter.ended() {
+        if self.stuck || self.interpreter.ended_for_good() {
             return Ok(None);
         }
         let place = match flow.advance() {

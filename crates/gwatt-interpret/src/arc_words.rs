@@ -31,7 +31,8 @@ impl Control<'_> {
         let otherwise = self.machine.controller.language.arc_without_center;
         let line = otherwise != ArcWithoutCenter::Refused
             && run.words.unused & shape == 0
-            && run.words.has_axes();
+            && run.words.has_axes()
+            && !run.facts.machine_coordinates;
         if line && otherwise == ArcWithoutCenter::LineOrAlarm {
             let message = "an arc without a centre and a radius: a line to its end, if no alarm \
                            (Fanuc: parameter 3403 bit CIR)";

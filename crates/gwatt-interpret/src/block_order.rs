@@ -49,7 +49,7 @@ impl Control<'_> {
                 continue;
             };
             if kind == ActionKind::End && self.is_grbl() {
-                self.leave_modes(run);
+                self.reset_modes(run);
             }
             self.ended |= kind == ActionKind::End;
             run.act(kind, f64::from(number) / 10.0);

@@ -79,6 +79,8 @@ pub(super) struct Control<'m> {
     pub(super) block_delete: BlockDelete,
     pub(super) begun: bool,
     pub(super) ended: bool,
+    /// The control goes on with what comes after that end (grbl).
+    pub(super) goes_on: bool,
     /// Some axis has been moved.
     pub(super) moved: bool,
     pub(super) has_program_number: bool,

@@ -74,6 +74,7 @@ impl<'m> Interpreter<'m> {
             block_delete: reading.block_delete,
             begun: false,
             ended: false,
+            goes_on: false,
             moved: false,
             has_program_number: false,
             run: 1,
@@ -120,6 +121,12 @@ impl<'m> Interpreter<'m> {
     #[must_use]
     pub fn ended(&self) -> bool {
         self.control.ended
+    }
+
+    /// The same, and nothing that follows is executed: grbl goes on after M2, M30 and `%`.
+    #[must_use]
+    pub fn ended_for_good(&self) -> bool {
+        self.control.ended && !self.control.goes_on
     }
 
     /// Executes one block: what it does goes into `effects`. What is not

@@ -36,9 +36,10 @@ impl Control<'_> {
         self.rules.macros == Macros::OWords && self.machine.controller.language.loose_o_words
     }
 
-    /// M2 and M30 leave these modes, under which it executes what comes after them (`gcode.c`,
-    /// "Program flow").
-    pub(super) fn leave_modes(&mut self, run: &mut Run<'_, '_>) {
+    /// M2 and M30 reset these modes; grbl then goes on with what follows (`gcode.c`, "Program
+    /// flow").
+    pub(super) fn reset_modes(&mut self, run: &mut Run<'_, '_>) {
+        self.goes_on = true;
         let modal = &mut self.modal;
         (modal.motion, modal.plane, modal.absolute) = (Motion::Linear, [0, 1, 2], true);
         (modal.feed_mode, modal.feed_mode_word) = (FeedMode::PerMinute, 940);

@@ -14,9 +14,9 @@ impl Control<'_> {
 
     fn skips(&mut self, block: &Block, report: &mut Report<'_, '_>) -> bool {
         let all = Span::new(0, block.text_end as usize);
-        if self.ended && self.is_grbl() && !block.tape {
-            // It goes on with what comes.
-            self.ended = block.words.is_empty() && block.issues.is_empty();
+        let says_something = !(block.words.is_empty() && block.issues.is_empty());
+        if self.ended && self.goes_on && !block.tape && says_something {
+            (self.ended, self.goes_on) = (false, false);
         }
         if self.ended {
             if !(block.tape || block.words.is_empty() && block.issues.is_empty()) {
@@ -31,6 +31,7 @@ impl Control<'_> {
         if block.tape && !self.rules.percent_names_programs {
             // The first `%` opens the tape; one after any block ends it.
             self.ended = self.begun;
+            self.goes_on = self.is_grbl();
             return true;
         }
         if block.delete_level == 0 {

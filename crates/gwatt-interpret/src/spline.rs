@@ -13,10 +13,10 @@ use std::f64::consts::SQRT_2;
 
 /// Lines for each control point.
 const LINES_FOR_A_POINT: usize = 15;
-/// How much further than from chord to chord the arcs may turn.
+/// By what factor arcs may turn more than their chords.
 const ARCS_TURN: f64 = 1.5;
-/// By how much the planner may exceed the limits of axes on arcs: what speeds up and what turns
-/// keep to them one by one.
+/// By how much the planner may exceed the limits of axes on arcs: tangential and centripetal
+/// acceleration each keep to them, their sum does not.
 const ARCS_EXCEED: f64 = SQRT_2 - 1.0;
 /// Control points and order of a NURBS that are followed.
 const POINTS_MAX: usize = 5000;

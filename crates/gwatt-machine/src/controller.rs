@@ -113,7 +113,7 @@ pub struct Language {
     pub type_2_as_type_1: bool,
     /// What G2 and G3 without a centre and a radius are.
     pub arc_without_center: ArcWithoutCenter,
-    /// How many times as fast as the way in the return of a tap is; `None`: not known, once.
+    /// Speed at which a tap is retracted, as a multiple of its feed; `None`: not known, counted as 1.
     pub tap_return_factor: Option<f64>,
     /// G53 moves at rapid speed whatever the motion word.
     pub moves_in_machine_at_rapid: bool,

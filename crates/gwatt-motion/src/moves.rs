@@ -298,10 +298,10 @@ pub enum ActionKind {
     End,
     /// The firmware waits until the axes stand, as it does between the moves of homing.
     Rest,
-    /// Another M word (its number), or a command of a printer with a name (0), with which the
-    /// axes move on.
+    /// Another M word (its number), or a named command of a printer (0) that does not stop the
+    /// axes.
     Other,
-    /// A command of a printer with a name of which it is not known whether the axes stop for it.
+    /// A printer's command at which the axes may stop or not.
     MayStop,
     /// Limits change, perhaps for the last move before already: the factor by which they rise at
     /// most for its axes.

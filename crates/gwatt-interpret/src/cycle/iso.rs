@@ -20,7 +20,7 @@ pub(super) struct Hole {
     pub(super) bottom_mm: f64,
     clear_mm: f64,
     dwell_s: Option<f64>,
-    /// Depth of a peck, not of all cycles.
+    /// Depth of a peck; 0 in cycles without pecks.
     pub(super) peck_mm: f64,
     shift_mm: [f64; 2],
 }

@@ -16,8 +16,8 @@ impl Control<'_> {
         }
         self.special.held.tap_q = self.cycle_q(None, run).or(self.special.held.tap_q);
         let q = self.special.held.tap_q.filter(|q| *q != 0.0)?;
-        let message = "whether a tap in pecks goes back to R or by a parameter, that parameter says: \
-                       it counts as back to R, which takes longer";
+        let message = "a parameter of the control says whether a tap in pecks returns to R or by a \
+                       short way: it counts as to R";
         let whole = run.whole();
         run.report.note_once("tap-pecks", message, whole);
         Some(q)
@@ -30,13 +30,13 @@ impl Control<'_> {
         place: &mut AxisValues,
         run: &mut Run<'_, '_>,
     ) -> bool {
-        let normal = self.modal.plane[2];
+        self.note_return(run);
         let into = if hole.number == 840 {
             Turning::Clockwise
         } else {
             Turning::CounterClockwise
         };
-        let mut depth_mm = hole.r_mm;
+        let (mut depth_mm, mut again) = (hole.r_mm, false);
         loop {
             depth_mm = if hole.peck_mm > 0.0 {
                 (depth_mm - hole.peck_mm).max(hole.bottom_mm)
@@ -46,11 +46,14 @@ impl Control<'_> {
             if !run.within_limits() {
                 return false;
             }
-            place[normal] = depth_mm;
-            self.part(run, MoveKind::Tap, place);
+            // Back to the last depth it may be as fast as on the way out.
+            let factor = again.then(|| self.tap_factor()).flatten();
+            again = true;
+            self.tap_stroke(depth_mm, factor, place, run);
             run.spin(Turning::Stopped);
             self.iso_wait(hole, run);
-            self.tap_return(into.reversed(), hole.r_mm, place, run);
+            run.spin(into.reversed());
+            self.tap_stroke(hole.r_mm, self.tap_factor(), place, run);
             run.spin(into);
             if depth_mm <= hole.bottom_mm + 1e-9 {
                 return true;
@@ -58,39 +61,46 @@ impl Control<'_> {
         }
     }
 
-    /// The way out of a tap, with the spindle turned back: as fast as the machine file says.
-    fn tap_return(
+    /// How many times as fast as F a tap is retracted, where that is faster.
+    fn tap_factor(&self) -> Option<f64> {
+        let factor = self.machine.controller.language.tap_return_factor;
+        factor.filter(|factor| *factor > 1.0)
+    }
+
+    /// A stroke to a level, axis and spindle by a factor faster.
+    fn tap_stroke(
         &mut self,
-        back: Turning,
-        r_mm: f64,
+        level_mm: f64,
+        factor: Option<f64>,
         place: &mut AxisValues,
         run: &mut Run<'_, '_>,
     ) {
-        let from = *place;
-        place[self.modal.plane[2]] = r_mm;
-        let factor = self.machine.controller.language.tap_return_factor;
+        let normal = self.modal.plane[2];
+        let length_mm = (place[normal] - level_mm).abs();
+        place[normal] = level_mm;
         let rpm = self.modal.spindle_rpm;
-        let faster = factor.filter(|factor| *factor > 1.0 && from != *place);
-        let feed_mm_s = faster.and_then(|_| {
-            let length_mm = (from[self.modal.plane[2]] - r_mm).abs();
-            self.feed_speed(run, place, None, length_mm, true)
+        let feed_mm_s = factor.filter(|_| length_mm > 0.0).and_then(|factor| {
+            let feed_mm_s = self.feed_speed(run, place, None, length_mm, true)?;
+            Some(feed_mm_s * factor)
         });
-        let turns = self.machine.spindle.is_some() && rpm > 0.0;
-        if let (Some(factor), Some(feed_mm_s)) = (faster, feed_mm_s) {
-            self.special.speed_mm_s = Some(feed_mm_s * factor);
-            if turns {
-                run.act(ActionKind::SpindleRpm, rpm * factor);
-            }
+        let faster =
+            factor.filter(|_| feed_mm_s.is_some() && self.machine.spindle.is_some() && rpm > 0.0);
+        self.special.speed_mm_s = feed_mm_s;
+        if let Some(factor) = faster {
+            run.act(ActionKind::SpindleRpm, rpm * factor);
         }
-        run.spin(back);
         self.part(run, MoveKind::Tap, place);
-        if self.special.speed_mm_s.take().is_some() && turns {
+        self.special.speed_mm_s = None;
+        if faster.is_some() {
             run.act(ActionKind::SpindleRpm, rpm);
         }
-        if factor.is_none() {
-            let message = "the way out of a tap counts at the speed of the way in: where the control \
-                           returns faster (Haas: Setting 130; Fanuc: extraction override), \
-                           tap_return_factor under [language] of the machine file says how much";
+    }
+
+    fn note_return(&self, run: &mut Run<'_, '_>) {
+        if self.machine.controller.language.tap_return_factor.is_none() {
+            let message = "the way out of a tap counts at the speed of the way in: if the control \
+                           returns faster (Haas: Setting 130; Fanuc: extraction override), give \
+                           tap_return_factor under [language] in the machine file";
             let whole = run.whole();
             run.report.note_once("tap-return", message, whole);
         }

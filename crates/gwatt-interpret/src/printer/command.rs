@@ -2,7 +2,7 @@
 
 use super::early::rises;
 use super::left_out::{note_corners, note_levelling, note_uncounted};
-use super::line::{Head, Parameters, Text, has, value};
+use super::line::{Head, Parameters, Text, has, holds_word, value};
 use super::verify_checksum;
 use crate::code::{GCode, Motion};
 use crate::control::{Control, Run};
@@ -23,8 +23,9 @@ impl Control<'_> {
         let before = run.steps.len();
         let errors = run.report.diagnostics.errors;
         run.facts.executed = true;
-        // Klipper: a name that it does not know, as macros copied from its configuration have.
-        if self.names_parameters() && run.report.text.trim_ascii_start().starts_with(b"#") {
+        // Klipper: no command has such a name; texts copied from printer.cfg have comments of this
+        // kind. Older versions take a word after it for the command.
+        if self.names_parameters() && self.is_hash_comment(run.report.text) {
             return;
         }
         let mut text = Text::new(run.report.text, run.block.text_end as usize);
@@ -100,10 +101,7 @@ impl Control<'_> {
         let (parameters, next) = match text.parameters(at) {
             Ok(found) => found,
             // Whatever its arguments, the profile says what it does.
-            Err(_)
-                if self.is_listed(letter, number)
-                    && (self.one_a_line() || ends_with_quote(text.rest(at))) =>
-            {
+            Err(_) if self.is_listed(letter, number) && self.one_a_line() => {
                 (Parameters::new(), None)
             }
             Err(odd) => {
@@ -131,6 +129,18 @@ impl Control<'_> {
         self.code(run, (letter, number, span), &parameters);
         // M900 has M among its parameters on Bambu Lab's printers.
         next.filter(|_| !(self.one_a_line() && (letter, number) == (b'M', 9000)))
+    }
+
+    /// Whether a line begins with `#` and names no command after it.
+    fn is_hash_comment(&self, text: &[u8]) -> bool {
+        let Some(rest) = text.trim_ascii_start().strip_prefix(b"#") else {
+            return false;
+        };
+        let letters = rest
+            .trim_ascii_start()
+            .split(|byte| !byte.is_ascii_alphabetic() && *byte != b'_');
+        let first = letters.into_iter().next().unwrap_or_default();
+        !(holds_word(rest) || first.contains(&b'_') || self.lists(first))
     }
 
     fn one_a_line(&self) -> bool {
@@ -280,7 +290,7 @@ impl Control<'_> {
             // What a line of axes alone means after it, firmwares see differently.
             (b'G', 50) if parameters.is_empty() => {
                 self.modal.motion = Motion::None;
-                run.act(ActionKind::Other, 5.0);
+                run.act(ActionKind::MayStop, 0.0);
             }
             (b'G', 280) => self.home(run, parameters, span),
             (b'G', 600) => self.save_position(run, parameters, span),
@@ -331,10 +341,10 @@ impl Control<'_> {
             (b'M', 5010) => self.restore_settings(run, span),
             (b'M', 980) => {
                 let message = "M98 runs a macro file, which is not read";
-                run.report.error("unsupported-code", message, span).help(
-                    "write its blocks in place of it; or, if nothing is known of such files, list M98 under \
-                     `unknown_macros` in [language] of the machine file",
-                );
+                let help = "write its blocks in place of it";
+                run.report
+                    .error("unsupported-code", message, span)
+                    .help(help);
             }
             (b'M', 990) => refuse(run, span, "M99 belongs to a macro file"),
             (b'G', 650..=670) => refuse(run, span, "a macro call is nothing that printers know"),
@@ -472,11 +482,6 @@ pub(super) fn refuse(run: &mut Run<'_, '_>, span: Span, message: &str) {
     run.report
         .error("unsupported-code", message, span)
         .help("nothing is estimated for a program with motion that is not understood");
-}
-
-/// Whether nothing comes after a text in quotes.
-fn ends_with_quote(rest: &[u8]) -> bool {
-    rest.trim_ascii_end().ends_with(b"\"")
 }
 
 /// What stands where a parameter should: an expression, or text.

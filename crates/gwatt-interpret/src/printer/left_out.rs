@@ -1,4 +1,4 @@
-//! Notes of what commands of printers add to moves, and is not counted.
+//! Notes on what commands of printers add to moves and is not counted.
 
 use crate::control::Run;
 use gwatt_syntax::source::Span;

@@ -348,7 +348,7 @@ impl<'t> Text<'t> {
 }
 
 /// Whether a letter with a number stands in a text.
-fn holds_word(text: &[u8]) -> bool {
+pub(super) fn holds_word(text: &[u8]) -> bool {
     text.windows(2).any(|pair| match pair {
         [letter, number] => {
             letter.is_ascii_alphabetic()

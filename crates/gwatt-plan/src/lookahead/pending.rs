@@ -37,7 +37,7 @@ pub(super) struct Pending<T> {
     /// It may be entered faster than it runs, the change of pace comes late, and it is too
     /// short to come down to its own.
     pub lags: bool,
-    /// What is before it may have ended before it comes, so that it keeps all of its
+    /// The element before it may have ended before this one is queued: it then keeps all of its
     /// acceleration.
     pub comes_late: bool,
     /// At some lower override it may keep all of its acceleration at a joint in which it
@@ -122,7 +122,8 @@ impl<T: Copy> Pending<T> {
 
     /// Whether it begins at rest and may take no longer than `least_s`.
     pub fn is_brief(&self, least_s: f64) -> bool {
-        self.entry2 == 0.0 && 4.0 * self.element.length_mm <= self.accel() * least_s * least_s
+        (self.entry2 == 0.0 || self.comes_late)
+            && 4.0 * self.element.length_mm <= self.accel() * least_s * least_s
     }
 
     /// How far lower overrides may go beyond its plan.

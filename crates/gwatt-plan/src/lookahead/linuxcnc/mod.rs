@@ -31,7 +31,7 @@ pub(super) const RENEWED: usize = optimiser::HITS;
 /// Cycles that an element lasts at least.
 const CYCLES_MIN: f64 = 1.02;
 /// Servo cycles in which an element that begins at rest may have ended before the next one comes
-/// into the queue: recorded at two, and not at four.
+/// into the queue: recorded at two, not at four; six with a margin.
 const BRIEF_CYCLES: f64 = 6.0;
 /// Cycles after which a change of pace acts: HAL hands it on within one, and the planner takes
 /// it in the next.
