@@ -39,6 +39,7 @@ mod same_moves;
 mod shared_places;
 mod split;
 mod single_holes;
+mod stop_words;
 mod stops;
 mod turned;
 mod waits;

@@ -92,6 +92,33 @@ fn words_of_one_firmware_that_move_nothing() {
     );
 }
 
+/// Klipper knows no command `#`; older versions take a word after it for the command.
+#[test]
+fn lines_that_begin_with_a_hash_are_comments_on_klipper() {
+    assert_snapshot!(klipper("# fourth nudge\nG1 X1 F60\n"), @"2 feed X0.000>1.000 v1.000 a1000");
+    for line in [
+        "# G1 X30 F60",
+        "#G1 X30",
+        "# PAUSE",
+        "#SET_VELOCITY_LIMIT ACCEL=5",
+    ] {
+        let found = klipper(&format!("{line}\nG1 X1 F60\n"));
+        assert!(found.contains(": "), "{line}: {found}");
+    }
+}
+
+/// What stands where a parameter should hides no command after it.
+#[test]
+fn quotes_at_the_end_of_a_line_hide_no_command() {
+    for line in [
+        "M42 P{x} G1 X200 F120 M118 S\"b\"",
+        "M575 P1 S={a} G1 X200 M117 \"done\"",
+    ] {
+        let found = reprap(&format!("{line}\n"));
+        assert!(found.contains(": "), "{line}: {found}");
+    }
+}
+
 /// Klipper, "G-Codes": names without motion pass; macros of the machine and
 /// RepRapFirmware's meta commands are refused by name.
 #[test]
