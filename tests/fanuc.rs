@@ -111,6 +111,15 @@ fn moves_in_machine_coordinates_are_rapids() {
     3 feed X20.0000 F100.0000
     ");
     assert!(notes("fanuc", program).contains(&"rapid-in-g53"));
+    // Under G91 Fanuc ignores G53, and Mitsubishi goes by the increment (M700V, 14.4).
+    assert_eq!(
+        moves("fanuc", "G91 G0 X10.\nG53 X-200.\n"),
+        "2 incremental-in-g53: G53 under G91: controls ignore it, or go by the increment\n"
+    );
+    assert_snapshot!(moves("fanuc", "G91 G0 X10.\nG90 G53 X-200.\n"), @r"
+    1 rapid X10.0000
+    2 rapid X-200.0000
+    ");
     // Mitsubishi: "cutting feedrate or rapid traverse following command modal".
     assert_snapshot!(moves("mitsubishi", program), @r"
     1 feed X10.0000 F100.0000

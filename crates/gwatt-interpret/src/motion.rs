@@ -201,7 +201,26 @@ impl Control<'_> {
         false
     }
 
+    /// Refuses G53 under G91 where that is not the same on all controls.
+    fn refuses_machine_increment(&self, run: &mut Run<'_, '_>) -> bool {
+        let family = self.machine.controller.language.family.facts();
+        let differs = run.facts.machine_coordinates
+            && !self.modal.absolute
+            && family.increments_in_machine_differ;
+        if differs {
+            let message = "G53 under G91: controls ignore it, or go by the increment";
+            let span = run.whole();
+            run.report
+                .error("incremental-in-g53", message, span)
+                .help("write G90 in the block, if it names a place of the machine");
+        }
+        differs
+    }
+
     pub(super) fn straight(&mut self, run: &mut Run<'_, '_>) {
+        if self.refuses_machine_increment(run) {
+            return;
+        }
         let language = &self.machine.controller.language;
         let always = run.facts.machine_coordinates && language.moves_in_machine_at_rapid;
         let rapid = (always || matches!(self.modal.motion, Motion::Rapid | Motion::None))

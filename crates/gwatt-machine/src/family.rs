@@ -34,6 +34,8 @@ pub struct FamilyFacts {
     pub comment_to_line_end: bool,
     /// G1 goes to machine coordinates under G53.
     pub feeds_in_machine_coordinates: bool,
+    /// What G53 does under G91 differs: controls ignore it, or go by the increment.
+    pub increments_in_machine_differ: bool,
     /// Canned cycles can be written out as single blocks.
     pub writes_out_cycles: bool,
     /// The way to a reference point is written in machine coordinates.
@@ -100,6 +102,7 @@ pub enum LevelWords {
 const ISO: FamilyFacts = FamilyFacts {
     comment_to_line_end: false,
     feeds_in_machine_coordinates: false,
+    increments_in_machine_differ: true,
     writes_out_cycles: true,
     returns_in_machine_coordinates: false,
     reference_in_parameters: false,
@@ -123,6 +126,7 @@ const ISO: FamilyFacts = FamilyFacts {
 
 const RS274: FamilyFacts = FamilyFacts {
     feeds_in_machine_coordinates: true,
+    increments_in_machine_differ: false,
     reference_in_parameters: true,
     // LinuxCNC: convert_arc ("R I J K words all missing for arc"); grbl: error 26.
     arcs_need_words: true,
@@ -141,6 +145,7 @@ const RS274: FamilyFacts = FamilyFacts {
 
 /// What families without any of this have.
 const PLAIN: FamilyFacts = FamilyFacts {
+    increments_in_machine_differ: false,
     writes_out_cycles: false,
     motion_survives_cycles: false,
     level_by_g99: false,

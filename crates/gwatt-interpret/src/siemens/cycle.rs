@@ -117,16 +117,20 @@ impl Control<'_> {
         let wrong = match (value(1), value(2)) {
             (Some(retract), Some(reference)) => {
                 // Where both planes are one, an absolute depth says which way it goes.
-                let end = Some(retract).filter(|retract| *retract != reference);
-                let end = end.map(|retract| reference - retract);
-                let end = end.or(value(4)
-                    .filter(|_| below.is_none())
-                    .map(|it| it - reference));
-                let sign = end.filter(|way| *way != 0.0).map(f64::signum);
-                let safe = |sign: f64| reference - sign * value(3).unwrap_or(0.0).abs();
-                let depth = |sign| below.map(|below| reference + sign * below.abs());
-                match sign.map(|sign| (sign, safe(sign), depth(sign).or(value(4)))) {
-                    Some((sign, safe, Some(depth))) if (depth - safe) * sign >= 0.0 => {
+                let way = if retract == reference {
+                    let absolute = value(4).filter(|_| below.is_none());
+                    absolute.map_or(0.0, |depth| depth - reference)
+                } else {
+                    reference - retract
+                };
+                let sign = way.signum();
+                let safe = reference - sign * value(3).unwrap_or(0.0).abs();
+                let depth = below.map(|below| reference + sign * below.abs());
+                match depth.or(value(4)) {
+                    _ if way == 0.0 => {
+                        "a cycle whose retraction plane is its reference plane, without a depth DP"
+                    }
+                    Some(depth) if (depth - safe) * sign >= 0.0 => {
                         return Some(Levels {
                             axis,
                             retract,
@@ -136,11 +140,8 @@ impl Control<'_> {
                             sign,
                         });
                     }
-                    Some((_, _, Some(_))) => "a cycle whose depth lies above its reference plane",
-                    Some(_) => "a cycle without a depth (DP or DPR)",
-                    None => {
-                        "a cycle whose retraction plane is its reference plane, without a depth DP"
-                    }
+                    Some(_) => "a cycle whose depth lies above its reference plane",
+                    None => "a cycle without a depth (DP or DPR)",
                 }
             }
             _ => "a cycle without a retraction plane (RTP) and a reference plane (RFP)",
