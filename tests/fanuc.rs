@@ -37,7 +37,7 @@ fn moves_on(machine: &Machine, program: &str) -> String {
 }
 
 /// Rules of the notes on a program.
-fn notes(controller: &str, program: &str) -> Vec<&'static str> {
+pub fn notes(controller: &str, program: &str) -> Vec<&'static str> {
     let machine = machine(controller, "");
     pipeline::moves(
         Cursor::new(program),
@@ -111,10 +111,10 @@ fn moves_in_machine_coordinates_are_rapids() {
     3 feed X20.0000 F100.0000
     ");
     assert!(notes("fanuc", program).contains(&"rapid-in-g53"));
-    // Under G91 Fanuc ignores G53, and Mitsubishi goes by the increment (M700V, 14.4).
+    // Under G91 Fanuc ignores G53, and Mitsubishi takes it as an increment (M700V, 14.4).
     assert_eq!(
         moves("fanuc", "G91 G0 X10.\nG53 X-200.\n"),
-        "2 incremental-in-g53: G53 under G91: controls ignore it, or go by the increment\n"
+        "2 incremental-in-g53: G53 under G91: controls ignore it, or take it as an increment\n"
     );
     assert_snapshot!(moves("fanuc", "G91 G0 X10.\nG90 G53 X-200.\n"), @r"
     1 rapid X10.0000

@@ -129,7 +129,7 @@ fn controller() -> Controller {
             peck_clearance_mm: 1.0,
             escape_mm: None,
             groove_return_mm: None,
-            type_2_as_type_1: false,
+            type_2: None,
             arc_without_center: gwatt::machine::ArcWithoutCenter::Refused,
             tap_return_factor: None,
             moves_in_machine_at_rapid: false,

@@ -6,7 +6,7 @@
 
 use insta::assert_snapshot;
 
-use crate::fanuc::moves;
+use crate::fanuc::{moves, notes};
 
 /// B-63604EN, "Absolute and Incremental Programming", "Diameter and Radius
 /// Programming": U, V, W and H.
@@ -161,6 +161,42 @@ fn stock_removal_along_z() {
             .collect::<Vec<_>>()
     };
     assert_eq!(after(&two), after(&one));
+}
+
+/// Haas' lathe operator's manual, "G71 Type II Details". Passes of 4 mm from X60: at X52 to the
+/// wall of 45°, which is there at Z-17, and along it to X60, Z-21; at X44 to the arc, which is
+/// there at Z-14 + √(4² - 2²), and along the contour to X52; at last along all of it.
+#[test]
+fn passes_of_type_two_go_along_the_contour() {
+    let program = "G97 S500 M3\nG0 X60. Z2.\nG71 P10 Q20 U0 W0 D4. R0.5 F0.3\nN10 G0 X40. Z2.\nG1 Z-10. F0.1\nG3 X48. Z-14. R4.\nG1 X50. Z-16.\nN20 X60. Z-21.\n";
+    assert_snapshot!(moves("haas-lathe", program), @r"
+2 rapid X30.0000 Z2.0000
+3 rapid
+3 rapid X26.0000
+3 feed Z-17.0000 F150.0000
+3 feed X30.0000 Z-21.0000 F150.0000
+3 rapid X30.5000
+3 rapid Z2.0000
+3 rapid X22.0000
+3 feed Z-10.5359 F150.0000
+3 arc X24.0000 Z-14.0000 center -14.0000,20.0000 turns 0.1667 F150.0000
+3 feed X25.0000 Z-16.0000 F150.0000
+3 feed X26.0000 Z-17.0000 F150.0000
+3 rapid X26.5000
+3 rapid Z2.0000
+3 rapid X20.0000
+3 feed Z-10.0000 F150.0000
+3 arc X24.0000 Z-14.0000 center -14.0000,20.0000 turns 0.2500 F150.0000
+3 feed X25.0000 Z-16.0000 F150.0000
+3 feed X30.0000 Z-21.0000 F150.0000
+3 rapid Z2.0000
+");
+    // Nothing of this is a parameter that is not known.
+    assert!(
+        notes("haas-lathe", program)
+            .iter()
+            .all(|note| *note != "cycle-parameter")
+    );
 }
 
 /// Type II: under the level X52 two valleys. The first, with walls of 45°, is 3 mm

@@ -306,6 +306,7 @@ impl<'m> Singles<'m> {
             _ => return Err("not all of its moves are straight"),
         };
         let end = place(&mv.end).map(lines.round);
+        let from = lines.at;
         let mut words = word.to_owned();
         let says = self.says_place(mv, of, &lines.at, &end);
         let mut moves = false;
@@ -331,7 +332,13 @@ impl<'m> Singles<'m> {
             }
             for (axis, center) in arc.plane.into_iter().zip(arc.center) {
                 let letter = b"IJK".get(axis).ok_or("its arcs lie in no plane")?;
-                let offset = rounded((center - mv.start[axis]) / of.modal.mm_per_unit);
+                // From the start as it is written: a unit further is two on a diameter.
+                let unit_mm = of.modal.mm_per_unit;
+                let mut next = mv.start;
+                next[axis] += unit_mm;
+                let [start, next] = [place(&mv.start)[axis], place(&next)[axis]];
+                let moved = (from[axis] - start) / (next - start);
+                let offset = rounded((center - mv.start[axis]) / unit_mm - moved);
                 let _ = write!(words, " {}{}", char::from(*letter), decimal(offset, true));
             }
         }

@@ -307,8 +307,8 @@ fn what_is_not_written_out_is_said() {
         &format!("G71 P10 Q20 U0.4 D8. R1. F0.3\n{two}"),
         "the first block of the contour names X and Z (type II): how the tool goes from pass to \
          pass is a matter of the control; where the contour has no pocket leave out the axis that \
-         does not move there, or, if the control goes as in type I, write type_2_as_type_1 = true \
-         under [language] of the machine file",
+         does not move there, or write under [language] of the machine file type_2 = \"as-type-1\" \
+         or \"along-contour\", as the control goes",
     );
     // A way out that is not the cycle's own return.
     let out = contour.replace("N20 X60. Z-70.\n", "X60. Z-70.\nN20 G0 Z1.\n");
@@ -341,7 +341,7 @@ fn a_contour_without_a_pocket_goes_as_in_type_one() {
     let begin = "G21 G99 G54 T0300\nG97 S500 M3\nG0 X60. Z3.\n";
     let contour = "N10 G0 X30. Z3.\nG1 Z-60.\nX60. Z-70.\nN20 G0 Z3.\nG0 X66. Z4.\n";
     let program = format!("{begin}G71 P10 Q20 D8. R1. F0.3\n{contour}");
-    let known = Shop::lathe("fanuc-lathe", 400.0, "[language]\ntype_2_as_type_1 = true");
+    let known = Shop::lathe("fanuc-lathe", 400.0, "[language]\ntype_2 = \"as-type-1\"");
     // The same passes as those of type I.
     let one = limited(
         &Shop::lathe("fanuc-lathe", 400.0, ""),
@@ -351,7 +351,7 @@ fn a_contour_without_a_pocket_goes_as_in_type_one() {
     assert_eq!(two.replace(" Z3.)", ")"), one.replace(" Z3.)", ")"));
     // One with a pocket stays.
     let pocket = program.replace("G1 Z-60.", "G1 Z-20.\nX20. Z-40.\nX30. Z-60.");
-    let unused = Shop::lathe("fanuc-lathe", 400.0, "[language]\ntype_2_as_type_1 = true");
+    let unused = Shop::lathe("fanuc-lathe", 400.0, "[language]\ntype_2 = \"as-type-1\"");
     let errors = unused.refused(&pocket, READ);
     assert!(errors.contains("(type II)"), "{errors}");
     // Why it stays is said once at its line, though many of its moves do not fit.

@@ -208,7 +208,7 @@ impl Control<'_> {
             && !self.modal.absolute
             && family.increments_in_machine_differ;
         if differs {
-            let message = "G53 under G91: controls ignore it, or go by the increment";
+            let message = "G53 under G91: controls ignore it, or take it as an increment";
             let span = run.whole();
             run.report
                 .error("incremental-in-g53", message, span)

@@ -109,8 +109,9 @@ pub struct Language {
     pub escape_mm: Option<f64>,
     /// See `escape_mm`.
     pub groove_return_mm: Option<f64>,
-    /// G71 and G72 go from pass to pass as in type I where the contour of type II has no pocket.
-    pub type_2_as_type_1: bool,
+    /// How G71 and G72 go from pass to pass where the contour of type II has no pocket; `None`:
+    /// not known.
+    pub type_2: Option<TypeTwo>,
     /// What G2 and G3 without a centre and a radius are.
     pub arc_without_center: ArcWithoutCenter,
     /// Speed at which a tap is retracted, as a multiple of its feed; `None`: not known, counted as 1.
@@ -256,6 +257,18 @@ pub enum ArcWithoutCenter {
     Line,
     /// A line or an alarm, as a parameter of the control says: it counts as a line.
     LineOrAlarm,
+}
+
+/// How the tool goes after a pass of G71 and G72 whose contour begins with both axes (type II)
+/// and has no pocket.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TypeTwo {
+    /// Off the contour at 45 degrees, as in type I.
+    #[serde(rename = "as-type-1")]
+    AsTypeOne,
+    /// Along the contour up to the pass before, and straight out of the cut.
+    AlongContour,
 }
 
 /// What a number without a decimal point means.

@@ -34,7 +34,7 @@ pub struct FamilyFacts {
     pub comment_to_line_end: bool,
     /// G1 goes to machine coordinates under G53.
     pub feeds_in_machine_coordinates: bool,
-    /// What G53 does under G91 differs: controls ignore it, or go by the increment.
+    /// What G53 does under G91 differs: controls ignore it, or take it as an increment.
     pub increments_in_machine_differ: bool,
     /// Canned cycles can be written out as single blocks.
     pub writes_out_cycles: bool,

@@ -7,6 +7,7 @@
 mod contour;
 mod drill;
 mod groove;
+mod passes;
 mod piece;
 mod pockets;
 mod rough;
@@ -40,9 +41,9 @@ const BY_PARAMETER: &str = "its return, escape or chamfer is a parameter of the 
 /// Why it is not known how the tool goes from pass to pass.
 const TYPE_TWO: &str = "the first block of the contour names X and Z (type II): how the tool goes \
                         from pass to pass is a matter of the control; where the contour has no \
-                        pocket leave out the axis that does not move there, or, if the control \
-                        goes as in type I, write type_2_as_type_1 = true under [language] of the \
-                        machine file";
+                        pocket leave out the axis that does not move there, or write under \
+                        [language] of the machine file type_2 = \"as-type-1\" or \
+                        \"along-contour\", as the control goes";
 
 /// `at` with other places of X and Z.
 fn xz(at: AxisValues, x: f64, z: f64) -> AxisValues {

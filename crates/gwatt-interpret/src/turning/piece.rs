@@ -59,10 +59,9 @@ impl Piece {
         self.start[axis] + (self.end[axis] - self.start[axis]) * share
     }
 
-    /// Its parts between the ends of the quarters of its circle, each of which
-    /// goes one way along both axes.
-    pub(super) fn quarters(&self) -> Vec<Self> {
-        let part = |from: f64, to: f64| Self {
+    /// The part of it between two shares of its length.
+    pub(super) fn part(&self, from: f64, to: f64) -> Self {
+        Self {
             start: self.at(from),
             end: self.at(to),
             arc: self.arc.map(|arc| Arc {
@@ -71,9 +70,14 @@ impl Piece {
                 ..arc
             }),
             kind: self.kind,
-        };
+        }
+    }
+
+    /// Its parts between the ends of the quarters of its circle, each of which
+    /// goes one way along both axes.
+    pub(super) fn quarters(&self) -> Vec<Self> {
         let Some(arc) = &self.arc else {
-            return vec![part(0.0, 1.0)];
+            return vec![self.part(0.0, 1.0)];
         };
         let (first, last) = (arc.start_angle_rad, arc.start_angle_rad + arc.sweep_rad);
         let (low, high) = (first.min(last), first.max(last));
@@ -87,7 +91,7 @@ impl Piece {
         let pairs = shares.iter().zip(shares.iter().skip(1));
         pairs
             .filter(|(from, to)| to > from)
-            .map(|(&from, &to)| part(from, to))
+            .map(|(&from, &to)| self.part(from, to))
             .collect()
     }
 

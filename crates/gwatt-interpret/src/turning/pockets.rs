@@ -27,6 +27,8 @@ pub(super) struct Stock {
     pub(super) forward: f64,
     /// How the tool goes in from outside.
     pub(super) into: MoveKind,
+    /// After a pass it goes along the contour up to the pass before.
+    pub(super) follows: bool,
 }
 
 /// A cut that is still to be made.

@@ -2,7 +2,7 @@
 //!
 //! G71: from the start the tool goes aside by what is left for finishing; then
 //! passes along Z, each deeper by the depth of cut, to where they meet the
-//! contour; an escape of 45 degrees and back; at the end once along the contour
+//! contour; an escape (`passes`) and back; at the end once along the contour
 //! and back to the start. G72 the same with X and Z exchanged. The escape is a
 //! rapid here, which counts higher than a feed.
 
@@ -11,7 +11,7 @@ use super::pockets::Stock;
 use super::state::{Contour, ContourCycle};
 use super::{TYPE_TWO, X, Z};
 use crate::control::{Control, Run};
-use gwatt_machine::{AxisSet, AxisValues};
+use gwatt_machine::{AxisSet, AxisValues, TypeTwo};
 use gwatt_motion::{Move, MoveKind};
 
 impl Control<'_> {
@@ -76,18 +76,20 @@ impl Control<'_> {
             contour_wrong("the contour goes back on itself along the cut", run);
             return;
         }
-        let type_two = !one_way(deep, -inward);
-        if type_two && !contour.two_axes {
+        let has_pockets = !one_way(deep, -inward);
+        if has_pockets && !contour.two_axes {
             contour_wrong(
                 "the contour rises and falls; pockets (type II) need X and Z in its first block",
                 run,
             );
             return;
         }
-        let as_type_one = self.machine.controller.language.type_2_as_type_1 && !type_two;
-        if contour.two_axes && !as_type_one {
+        let language = &self.machine.controller.language;
+        let type_two = language.type_2.filter(|_| !has_pockets);
+        if contour.two_axes && type_two.is_none() {
             run.facts.guessed = run.facts.guessed.or(Some(TYPE_TWO));
         }
+        let follows = contour.two_axes && type_two == Some(TypeTwo::AlongContour);
         let count = (floor - corner[deep]).abs() / depth_mm;
         if count > 1e5 {
             contour_wrong("more than 100000 passes", run);
@@ -107,8 +109,9 @@ impl Control<'_> {
             inward,
             forward,
             into,
+            follows,
         };
-        if type_two {
+        if has_pockets {
             self.pockets(&stock, rest, run);
         } else {
             self.plain_passes(&stock, floor, rest, run);
@@ -123,40 +126,6 @@ impl Control<'_> {
         self.along(rest, run);
         self.along(way_out, run);
         self.part(run, MoveKind::Rapid, &start);
-    }
-
-    /// Type I: passes to where each level meets the contour.
-    fn plain_passes(&mut self, stock: &Stock, floor: f64, rest: &[Piece], run: &mut Run<'_, '_>) {
-        let (deep, along) = (stock.deep, X + Z - stock.deep);
-        let Some(last) = rest.last() else { return };
-        let errors = run.report.diagnostics.errors;
-        let mut number = 1;
-        loop {
-            let level = stock.level(number);
-            if (floor - level) * stock.inward <= TOLERANCE_MM {
-                return;
-            }
-            let crossing = rest.iter().find_map(|piece| {
-                let share = piece.crossing(deep, level)?;
-                Some(piece.place(along, share))
-            });
-            let wall = crossing.unwrap_or(last.end[along]);
-            let mut place = stock.corner;
-            place[deep] = level;
-            self.part(run, stock.into, &place);
-            place[along] = wall;
-            self.part(run, MoveKind::Feed, &place);
-            let away = stock.escape_mm.min((wall - stock.corner[along]).abs());
-            place[deep] -= stock.inward * stock.escape_mm;
-            place[along] -= stock.forward * away;
-            self.part(run, MoveKind::Rapid, &place);
-            place[along] = stock.corner[along];
-            self.part(run, MoveKind::Rapid, &place);
-            if !run.within_limits() || run.report.diagnostics.errors != errors {
-                return;
-            }
-            number += 1;
-        }
     }
 
     /// G73.
@@ -191,7 +160,7 @@ impl Control<'_> {
     }
 
     /// Along pieces of the contour, at the feed of the cycle.
-    fn along(&mut self, pieces: &[Piece], run: &mut Run<'_, '_>) {
+    pub(super) fn along(&mut self, pieces: &[Piece], run: &mut Run<'_, '_>) {
         for piece in pieces {
             if piece.kind == MoveKind::Dwell {
                 continue;

@@ -8,7 +8,7 @@ use super::printer_table::PrinterTable;
 use super::value::{At, NotNegative, Positive};
 use crate::controller::{
     ArcRule, ArcWithoutCenter, CompensationCorner, CompensationLead, Lathe, PathMode, Point,
-    PowerOnMotion, RapidJoint, RapidPath, SpindleWait, ToolChange,
+    PowerOnMotion, RapidJoint, RapidPath, SpindleWait, ToolChange, TypeTwo,
 };
 use crate::family::Family;
 use crate::knob::{KnobTarget, KnobUnit};
@@ -96,6 +96,9 @@ pub(crate) struct LanguageTable {
     /// Whether G83 and G87 of a lathe come out to R after each peck; default: a parameter
     /// of the control says so.
     pub(crate) pecks_return_to_r: Option<bool>,
+    /// How G71 and G72 of a lathe go from pass to pass where the first block of the contour
+    /// names X and Z (type II) and the contour has no pocket; default: not known.
+    pub(crate) type_2: Option<TypeTwo>,
     /// What a block with axes under G2 or G3 is that has neither a centre nor a radius;
     /// default: it is refused.
     pub(crate) arc_without_center: Option<ArcWithoutCenter>,

@@ -20,7 +20,9 @@ use super::value::{
     At, AtLeastOne, Fraction, Letter, NotNegative, Number, OneOrMany, Part, PerAxis, Positive,
     RapidPercent, ResponseTime, Share,
 };
-use crate::controller::{ArcWithoutCenter, PathMode, Point, PowerOnMotion, RapidPath, ToolChange};
+use crate::controller::{
+    ArcWithoutCenter, PathMode, Point, PowerOnMotion, RapidPath, ToolChange, TypeTwo,
+};
 
 /// A machine whose drives share a power converter.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -214,9 +216,10 @@ pub(crate) struct OwnLanguageTable {
     /// How far it goes back after a peck of G74 and G75 of a lathe that gives no R, in mm
     /// (Fanuc: parameter 5139; Haas: Setting 22).
     pub(crate) groove_return_mm: Option<NotNegative>,
-    /// Whether G71 and G72 of a lathe go from pass to pass as in type I where the first block
-    /// of the contour names X and Z (type II) and the contour has no pocket; default: not known.
-    pub(crate) type_2_as_type_1: Option<bool>,
+    /// How G71 and G72 of a lathe go from pass to pass where the first block of the contour
+    /// names X and Z (type II) and the contour has no pocket: as in type I, or along the contour
+    /// up to the pass before; default: as the profile says, else not known.
+    pub(crate) type_2: Option<TypeTwo>,
     /// How arc centres I J K are meant at power-on.
     pub(crate) arc_centre: Option<DistanceName>,
     /// What a block with axes under G2 or G3 is that has neither a centre nor a radius (Fanuc:

@@ -34,7 +34,7 @@ pub(crate) fn take(
     let given = |length: &Option<NotNegative>| length.as_ref().map(|length| length.value);
     language.escape_mm = given(&own.escape_mm);
     language.groove_return_mm = given(&own.groove_return_mm);
-    language.type_2_as_type_1 = own.type_2_as_type_1 == Some(true);
+    language.type_2 = own.type_2.or(language.type_2);
     if let Some(arc) = own.arc_without_center {
         language.arc_without_center = arc;
     }

@@ -98,7 +98,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
         escape_mm: None,
         groove_return_mm: None,
-        type_2_as_type_1: false,
+        type_2: table.type_2,
         arc_without_center: (table.arc_without_center).unwrap_or(ArcWithoutCenter::Refused),
         tap_return_factor: None,
         moves_in_machine_at_rapid: table.moves_in_machine_at_rapid.unwrap_or(false),
