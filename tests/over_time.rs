@@ -3,6 +3,7 @@
 mod figures;
 mod lower;
 mod overrides;
+mod voltage;
 mod worked;
 
 use crate::shop::{Shop, ended, gwatt};

@@ -215,6 +215,10 @@ impl<'a> Series<'a> {
 }
 
 impl SeriesSink for Series<'_> {
+    fn wants_volts(&self) -> bool {
+        self.columns.has_volts()
+    }
+
     fn row(&mut self, time_s: f64, line: u64, instant: &Instant) -> io::Result<()> {
         self.stop.check()?;
         if self.is_full() {

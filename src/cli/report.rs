@@ -21,8 +21,9 @@ as it is, then as `gwatt limit` writes it: `before` and `after` in the column
 factors, and the spindle where the machine has one: its drive's base load is in
 spindle_power_w, cutting in cutting_power_w. Axes stand while they wait for the
 spindle; stops of unknown length take no time. bus_w is what the converters
-deliver, regen_w what is fed back. With --limited the program in that file is shown
-as `after`.";
+deliver, regen_w what is fed back. Where the machine file limits the voltage of the
+bus, bus_low_v and bus_high_v are the lowest and the highest that it may have then.
+With --limited the program in that file is shown as `after`.";
 
 /// Arguments of `report`.
 #[derive(Debug, Clone, Args)]
@@ -41,10 +42,10 @@ pub struct ReportArgs {
     /// Write JSON here
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write a page with the power over time, the path and the worst blocks here
+    /// Write a page with power and bus voltage over time, the path and the worst blocks here
     #[arg(long, value_name = "PAGE", conflicts_with = "overrides")]
     pub html: Option<PathBuf>,
-    /// Draw the power over time here
+    /// Draw power and bus voltage over time here
     #[arg(long, value_name = "FILE", conflicts_with = "overrides")]
     pub svg: Option<PathBuf>,
     /// Write speed, acceleration, force and power of axes and spindle over time

@@ -42,6 +42,7 @@ mod rounds;
 mod row;
 mod schedule;
 mod series;
+mod series_volts;
 mod source;
 mod set;
 pub mod size;

@@ -7,13 +7,16 @@ use std::collections::VecDeque;
 use std::io::{self, Read, Seek};
 
 use super::executor::Executor;
+use super::series_volts::SeriesVolts;
 use super::source::Source;
+use super::watching::watching;
 use super::{Failure, Options};
 use crate::diagnostic::Diagnostic;
-use crate::interpret::Step;
+use crate::interpret::{Move, Step};
 use crate::machine::Machine;
 use crate::power::{
-    Assessor, AxisInstant, Instant, Motion, PowerModel, SpindleInstant, Turning, Want,
+    Assessment, Assessor, AxisInstant, BusVoltages, Durations, Instant, Motion, PowerModel,
+    SpindleInstant, Turning, VoltageCurve, Want,
 };
 
 /// Rows that a series may have, and how many steps of it are taken one by one: so
@@ -39,6 +42,21 @@ pub trait SeriesSink {
     /// # Errors
     /// Whatever the writing gives.
     fn row(&mut self, time_s: f64, line: u64, instant: &Instant) -> io::Result<()>;
+
+    /// Whether rows have the voltages of buses.
+    fn wants_volts(&self) -> bool {
+        false
+    }
+
+    /// Whether [`Self::voltages`] is wanted, for which the moves are judged as in a report.
+    fn wants_voltages(&self) -> bool {
+        false
+    }
+
+    /// Takes the voltages of buses over time as the limits over time have them.
+    fn voltages(&mut self, curves: Vec<VoltageCurve>) {
+        let _ = curves;
+    }
 }
 
 /// Reads a program and hands over its planned motion at 100 % override, a row
@@ -70,16 +88,13 @@ fn series_of(
     sink: &mut dyn SeriesSink,
 ) -> Result<Option<Diagnostic>, Failure> {
     let mut front = Executor::new(input, machine, options);
-    // Nothing is judged here.
-    let want = Want {
-        energy: false,
-        floor_w: f64::INFINITY,
-        regen_floor_w: f64::INFINITY,
-        accel: false,
-    };
-    let mut assessor = Assessor::new(machine, options.certificate, want).showing();
+    let model = PowerModel::new(machine);
+    let judges = sink.wants_voltages() && BusVoltages::new(machine, &model).is_some();
+    let mut assessor = judging(machine, options, judges);
+    let mut durations = Durations::default();
     let mut sampler = Sampler {
-        model: PowerModel::new(machine),
+        volts: SeriesVolts::new(machine, &model).filter(|_| sink.wants_volts()),
+        model,
         step_s,
         start_s: 0.0,
         next: 0,
@@ -95,21 +110,41 @@ fn series_of(
         sink,
     };
     while let Some(line) = front.next_line()? {
+        let mut judged = |mv: &Move, judged: &Assessment, _: &[u8]| durations.add(mv, judged);
         for step in &*line.steps {
             match step {
-                Step::Move(mv) => assessor.push(mv, b"", &mut |_, _, _| {}),
-                Step::Action(action) => assessor.act(action, &mut |_, _, _| {}),
+                Step::Move(mv) => assessor.push(mv, b"", &mut judged),
+                Step::Action(action) => assessor.act(action, &mut judged),
             }
             sampler.take_all(&mut assessor, false)?;
         }
         let moved = line.facts.turns_knob || line.steps.iter().any(Step::moves_axes);
-        assessor.end_line(moved, &mut |_, _, _| {});
+        assessor.end_line(moved, &mut judged);
+        assessor.lasting(&mut durations);
         sampler.take_all(&mut assessor, false)?;
     }
-    assessor.finish(&mut |_, _, _| {});
+    assessor.finish(&mut |mv, judged, _| durations.add(mv, judged));
+    assessor.lasting(&mut durations);
     sampler.take_all(&mut assessor, true)?;
     front.finish()?;
+    if judges {
+        sampler.sink.voltages(assessor.voltages());
+    }
     Ok(sampler.coarse)
+}
+
+/// What plans the moves; `judges`: as in a report, with the voltages of buses.
+fn judging<'m>(machine: &'m Machine, options: &Options, judges: bool) -> Assessor<'m> {
+    if judges {
+        return watching(machine, options).showing_voltage().showing();
+    }
+    let want = Want {
+        energy: false,
+        floor_w: f64::INFINITY,
+        regen_floor_w: f64::INFINITY,
+        accel: false,
+    };
+    Assessor::new(machine, options.certificate, want).showing()
 }
 
 /// Makes rows of motion.
@@ -135,6 +170,8 @@ struct Sampler<'a> {
     moved_s: f64,
     /// Where X was when it began.
     x_mm: f64,
+    /// Where rows have the voltages of buses.
+    volts: Option<SeriesVolts>,
     sink: &'a mut dyn SeriesSink,
 }
 
@@ -152,6 +189,16 @@ impl Stretch<'_> {
     fn turned_s(&self, t: f64) -> f64 {
         let since_s = self.spindle.map_or(0.0, |(_, since_s)| since_s);
         since_s + (t - self.from_s)
+    }
+
+    /// The state at `t` by the laws that hold at `inside`; X was at `x_mm` when the motion began.
+    fn at(&self, model: &PowerModel, [t, inside]: [f64; 2], x_mm: f64, now: &mut Instant) {
+        self.motion.at(model, t, inside, now);
+        if let Some((turning, _)) = self.spindle {
+            let x_mm = [t, inside].map(|t| self.motion.x_mm(t, inside, x_mm));
+            let turned = [t, inside].map(|t| self.turned_s(t));
+            turning.add(model, turned, x_mm, now);
+        }
     }
 
     /// From its beginning to its end, the instants at which something may jump.
@@ -276,6 +323,9 @@ impl Sampler<'_> {
         for pair in stretch.switches_s(self.x_mm).windows(2) {
             let [from, to] = [pair[0], pair[1]];
             let inside = 0.5 * (from + to);
+            if let Some(volts) = &mut self.volts {
+                volts.jump();
+            }
             self.row(&stretch, from, inside)?;
             loop {
                 // Not summed up: the rounding of a million sums would show.
@@ -321,12 +371,11 @@ impl Sampler<'_> {
     }
 
     fn row(&mut self, stretch: &Stretch<'_>, t: f64, inside: f64) -> Result<(), Failure> {
-        let motion = stretch.motion;
-        motion.at(&self.model, t, inside, &mut self.now);
-        if let Some((turning, _)) = stretch.spindle {
-            let x_mm = [t, inside].map(|t| motion.x_mm(t, inside, self.x_mm));
-            let turned = [t, inside].map(|t| stretch.turned_s(t));
-            turning.add(&self.model, turned, x_mm, &mut self.now);
+        let (model, x_mm) = (&self.model, self.x_mm);
+        stretch.at(model, [t, inside], x_mm, &mut self.now);
+        if let Some(volts) = &mut self.volts {
+            let at = |t: f64, now: &mut Instant| stretch.at(model, [t, inside], x_mm, now);
+            volts.row(t, &mut self.now, at);
         }
         let time_s = self.start_s + (t - stretch.from_s);
         match &mut self.last {
@@ -338,7 +387,7 @@ impl Sampler<'_> {
             None => self.last = Some((time_s, self.now.clone())),
         }
         self.rows += 1;
-        let line = motion.mv.line;
+        let line = stretch.motion.mv.line;
         self.sink
             .row(time_s, line, &self.now)
             .map_err(Failure::Output)

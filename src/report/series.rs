@@ -1,11 +1,12 @@
 //! A series over time as CSV (RFC 4180).
 
 use std::io::{self, Write};
+use std::iter;
 
 use super::figure::{Figure, Position};
 use crate::machine::{ALL_AXES, AxisKind, Machine};
 use crate::pipeline::SeriesSink;
-use crate::power::Instant;
+use crate::power::{BusVoltages, Instant, PowerModel};
 
 /// The columns of the spindle.
 const SPINDLE: [&str; 5] = [
@@ -24,11 +25,14 @@ pub struct SeriesColumns {
     spindle: bool,
     /// Whether each converter has columns of its own.
     several: bool,
+    /// Voltages of buses.
+    volts: usize,
 }
 
 impl SeriesColumns {
     /// Those of a machine: of each axis speed, acceleration, force or torque and power, of the
-    /// spindle what it does, and what the converters deliver and take back.
+    /// spindle what it does, what the converters deliver and take back, and the voltages of
+    /// buses that have limits.
     #[must_use]
     pub fn new(machine: &Machine) -> Self {
         let axes: Vec<usize> = machine.axis_set.iter().collect();
@@ -62,7 +66,16 @@ impl SeriesColumns {
                 names.extend([format!("{name}_bus_w"), format!("{name}_regen_w")]);
             }
         }
+        let buses = BusVoltages::new(machine, &PowerModel::new(machine));
+        let before = names.len();
+        for (converter, lowest) in buses.iter().flat_map(BusVoltages::names) {
+            let converter = machine.converters.get(converter).filter(|_| several);
+            let prefix = converter.map_or_else(String::new, |it| format!("{}_", it.name));
+            let which = if lowest { "low" } else { "high" };
+            names.push(format!("{prefix}bus_{which}_v"));
+        }
         Self {
+            volts: names.len() - before,
             names,
             axes,
             spindle,
@@ -98,6 +111,14 @@ impl SeriesColumns {
                 values.extend([*bus_w, *regen_w]);
             }
         }
+        let volts = instant.volts.iter().copied().chain(iter::repeat(f64::NAN));
+        values.extend(volts.take(self.volts));
+    }
+
+    /// Whether there are voltages of buses: see [`SeriesSink::wants_volts`].
+    #[must_use]
+    pub fn has_volts(&self) -> bool {
+        self.volts > 0
     }
 }
 
@@ -151,6 +172,10 @@ impl<W: Write> SeriesRows<W> {
 }
 
 impl<W: Write> SeriesSink for SeriesRows<W> {
+    fn wants_volts(&self) -> bool {
+        self.columns.has_volts()
+    }
+
     fn row(&mut self, time_s: f64, line: u64, instant: &Instant) -> io::Result<()> {
         self.values.clear();
         self.columns.append(instant, &mut self.values);

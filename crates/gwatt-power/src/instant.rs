@@ -57,6 +57,9 @@ pub struct Instant {
     pub bus_w: Vec<f64>,
     /// What is fed back to each converter, W.
     pub regen_w: Vec<f64>,
+    /// The lowest and the highest voltage of each bus that has limits of them, in the order of
+    /// [`BusVoltages::names`](super::BusVoltages::names), V; empty where none is followed.
+    pub volts: Vec<f64>,
 }
 
 impl Motion {

@@ -27,8 +27,8 @@ pub(super) struct Bus {
     capacitor: Capacitor,
     /// Share of its energy that is counted on.
     share: f64,
-    measure: Measure,
-    limit_v: f64,
+    pub(super) measure: Measure,
+    pub(super) limit_v: f64,
     /// Whether it is a limit, not only what takes peaks off the converter.
     rated: bool,
 }
@@ -278,8 +278,18 @@ impl Limits {
 }
 
 impl Bus {
+    /// Whether its voltage is a limit.
+    pub fn is_rated(&self) -> bool {
+        self.rated
+    }
+
+    /// What the converter keeps, V.
+    pub fn nominal_v(&self) -> f64 {
+        self.capacitor.nominal_v
+    }
+
     /// The voltage at an energy off the nominal: `½·C·|V² − V_n²|`, V.
-    fn volts(&self, energy_j: f64) -> f64 {
+    pub fn volts(&self, energy_j: f64) -> f64 {
         let Capacitor {
             capacitance_f,
             nominal_v,

@@ -33,23 +33,32 @@ mod bounded;
 mod bounds;
 mod continuous;
 mod buffered;
+mod filling;
 mod limits;
 mod lower_overrides;
 mod overload;
 mod rating;
+mod recorded;
 mod rms;
+mod shown_bus;
+mod shown_voltage;
 mod span;
 mod store;
 mod terms;
 mod track;
+mod voltage;
+mod voltage_trace;
 mod waiting;
 
 use buffered::Added;
 pub(super) use buffered::Buffered;
 pub use rating::{Measure, Rating};
+pub(super) use shown_bus::ShownBus;
 pub(super) use span::{Known, Span};
 pub(super) use spindle_load::{Level, SpindleLoad, Steps};
 use track::Track;
+pub use voltage::{VoltageCurve, VoltageSpan};
+pub(super) use voltage_trace::Lasts;
 
 use super::model::PowerModel;
 use super::piece::straight_line;
@@ -65,6 +74,7 @@ use limits::Limits;
 use rating::Place;
 use spindle_load::Levels;
 use terms::Models;
+use voltage_trace::{Stretch, VoltageTrace};
 use waiting::{Waiting, Waits};
 
 /// Watches the converters that have limits over time.
@@ -85,6 +95,8 @@ pub(super) struct DutyCycle {
     least_shares: [f64; 2],
     /// Between rapids and feeds the motion stops.
     apart: bool,
+    /// The voltages over time, where they are to be seen.
+    voltage: Option<Box<VoltageTrace>>,
 }
 
 impl DutyCycle {
@@ -137,6 +149,7 @@ impl DutyCycle {
                 models: Models::new(model, lower),
                 least_shares: machine.limits.least_shares(),
                 apart: machine.controller.planner.rapid_joint != RapidJoint::All,
+                voltage: None,
             })
         })
     }
@@ -178,6 +191,8 @@ impl DutyCycle {
                 slices,
                 lasting: None,
             });
+        } else {
+            self.end_stretch(Stretch::Move);
         }
     }
 
@@ -189,7 +204,7 @@ impl DutyCycle {
         let Some(mv) = &load.alone else {
             let levels = load.levels.as_slice();
             waiting.emit(model, &self.models, levels, &mut self.tracks);
-            return;
+            return self.end_stretch(Stretch::Move);
         };
         let place = Place::of(mv);
         let levels = load.levels.as_slice();
@@ -206,6 +221,7 @@ impl DutyCycle {
                 levels.add(&slice, &mut |slice| track.take(slice, place));
             }
         }
+        self.end_stretch(Stretch::Spindle);
     }
 
     /// Takes a move that runs as planned.
@@ -342,6 +358,7 @@ impl DutyCycle {
             track.take_kept(index, own, kept, &mut Levels::none(), place);
         }
         kept.clear();
+        self.end_stretch(Stretch::Move);
     }
 
     /// Takes a move whose timing is not known: its largest speeds and those of
@@ -392,6 +409,7 @@ impl DutyCycle {
         for (track, powers) in self.tracks.iter_mut().zip(self.powers.drain(..)) {
             track.span(powers, span, place);
         }
+        self.end_stretch(Stretch::Move);
     }
 
     /// What was found, converter by converter. A limit that is kept at the largest

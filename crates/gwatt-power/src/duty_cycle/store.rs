@@ -4,6 +4,7 @@
 use super::super::trace::{Apart, Slice};
 use super::Span;
 use super::rating::{Place, Worst};
+use super::recorded::Recorded;
 use super::terms::Terms;
 use arrayvec::ArrayVec;
 
@@ -42,6 +43,8 @@ pub(super) struct Store {
     /// What may come in at the end of a move of which it is not known when, J.
     pub edge_j: f64,
     pub worst: Worst,
+    /// What it holds over time, where that is to be seen.
+    pub recorded: Option<Box<Recorded>>,
 }
 
 impl Store {
@@ -61,12 +64,18 @@ impl Store {
             rest_w: f64::NEG_INFINITY,
             edge_j: 0.0,
             worst: Worst::default(),
+            recorded: None,
         }
     }
 
     /// Whether it holds anything.
     pub fn is_empty(&self) -> bool {
         self.held_j <= 0.0
+    }
+
+    /// What it holds, J.
+    pub fn held_j(&self) -> f64 {
+        self.held_j
     }
 
     /// The power that leaves it, W.
@@ -112,6 +121,7 @@ impl Store {
                 self.drained_j -= change_j;
                 self.drain_w = self.drain_w.max(self.taken_w - part.least_w());
             }
+            let before = [self.held_j, self.net_j];
             self.net_j += change_j;
             self.most_j = self.most_j.max(self.net_j);
             self.note(part.duration_s);
@@ -133,8 +143,33 @@ impl Store {
                 passed(&Slice::constant(part.duration_s, self.taken_w), now_s);
                 self.held_j = (self.held_j + change_j).max(0.0);
             }
+            if self.recorded.is_some() {
+                self.record(&part, before);
+            }
             now_s += part.duration_s;
         }
+    }
+
+    /// Records a part of a slice that has been taken.
+    #[cold]
+    fn record(&mut self, part: &Slice, before: [f64; 2]) {
+        let Some(recorded) = &mut self.recorded else {
+            return;
+        };
+        let ([held_j, net_j], mut rest) = (before, *part);
+        if held_j > 0.0
+            && self.held_j <= 0.0
+            && let Some(z) = part.emptied(held_j, self.taken_w)
+        {
+            let filled = part.part(part.from, z);
+            rest = part.part(z, part.to);
+            let left_s = recorded.follow(&filled, self.taken_w, before);
+            recorded.pass(left_s, [0.0, net_j - held_j]);
+        } else if held_j > 0.0 || self.held_j > 0.0 {
+            let left_s = recorded.follow(part, self.taken_w, before);
+            rest.duration_s = left_s;
+        }
+        recorded.pass(rest.duration_s, [self.held_j, self.net_j]);
     }
 
     /// Time passes with an energy that fills nothing.
@@ -151,6 +186,9 @@ impl Store {
         }
         self.net_j += change_j;
         self.note(duration_s);
+        if let Some(recorded) = &mut self.recorded {
+            recorded.pass(duration_s, [self.held_j, self.net_j]);
+        }
     }
 
     /// A move begins, where this is a bound: see [`Terms`].
@@ -269,6 +307,9 @@ impl Store {
     pub fn span(&mut self, power_w: f64, span: Span, time_s: f64, place: Place) {
         let below = power_w <= self.taken_w * (1.0 + 1e-9);
         let more_w = power_w - self.taken_w;
+        if let Some(recorded) = self.recorded.as_mut().filter(|_| !below) {
+            recorded.last();
+        }
         if below {
             let change_j = more_w.min(0.0) * span.worse_s(false);
             self.net_j += change_j;
@@ -281,6 +322,19 @@ impl Store {
             self.note(span.worse_s(true));
             self.held_j += change_j;
             self.worst.raise_lasting(self.held_j, time_s, place);
+        }
+        if let Some(recorded) = &mut self.recorded {
+            recorded.pass(span.worse_s(!below), [self.held_j, self.net_j]);
+        }
+    }
+
+    /// What it holds at the beginning of a run because of the one before, J, where the program
+    /// runs again and again; infinite where each leaves more.
+    pub fn carried_j(&self) -> f64 {
+        if self.net_j > ROUNDING * self.most_j {
+            f64::INFINITY
+        } else {
+            self.held_j
         }
     }
 }
