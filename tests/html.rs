@@ -5,6 +5,7 @@ mod compared;
 mod outputs;
 mod sets;
 mod shown;
+mod voltage;
 
 use std::fs;
 use std::path::{Path, PathBuf};

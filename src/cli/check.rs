@@ -56,8 +56,8 @@ pub struct CheckArgs {
         help_heading = "Known findings"
     )]
     pub write_baseline: Option<PathBuf>,
-    /// Write a page with the power over time, the path and the worst blocks of one program
-    /// here
+    /// Write a page with power and bus voltage over time, the path and the worst blocks of
+    /// one program here
     #[arg(long, value_name = "PAGE", conflicts_with = "overrides")]
     pub html: Option<PathBuf>,
     /// Judge at these overrides alone: such as 70%, or feed=70%,rapid=50%; a plain

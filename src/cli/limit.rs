@@ -61,11 +61,11 @@ pub struct LimitArgs {
     /// Write the same, with a summary, as JSON
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write a page with the power over time before and after, the path and the worst
-    /// blocks here; with --with-subprograms one page of all programs
+    /// Write a page with power and bus voltage over time before and after, the path and the
+    /// worst blocks here; with --with-subprograms one page of all programs
     #[arg(long, value_name = "PAGE")]
     pub html: Option<PathBuf>,
-    /// Draw the power over time before and after here
+    /// Draw power and bus voltage over time before and after here
     #[arg(long, value_name = "FILE", conflicts_with = "with_subprograms")]
     pub svg: Option<PathBuf>,
     #[command(flatten)]

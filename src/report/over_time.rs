@@ -55,6 +55,25 @@ pub(super) fn figures(rating: &Rating) -> String {
     }
 }
 
+/// From which power on an overload counts, W, and for how long that is permitted, such as
+/// `overload above 1.98 kW: 4.00 s within 10 s`.
+pub(super) fn overload(found: &OverTime) -> Option<(f64, String)> {
+    let Measure::Overload {
+        above_w, every_s, ..
+    } = found.rating.measure
+    else {
+        return None;
+    };
+    let converter = if found.converter.is_empty() {
+        String::new()
+    } else {
+        format!(" {}", found.converter)
+    };
+    let [above, limit] = [power(above_w), duration(found.rating.limit)];
+    let text = format!("overload{converter} above {above}: {limit} within {every_s} s");
+    Some((above_w, text))
+}
+
 /// What does not fit, in a sentence.
 pub(super) fn message(found: &OverTime) -> String {
     format!(

@@ -16,6 +16,15 @@ fn a_page_works_in_chromium() {
 }
 
 #[test]
+fn a_page_with_voltages_works_in_chromium() {
+    let desk = Desk::new();
+    let program = example("pocket.ngc");
+    let files = ["--allow", "feed", "-o", "fit.ngc", "--html", "page.html"];
+    desk.exits(0, &[&["limit", &program, "-m", "vmc"], &files[..]].concat());
+    works(&desk);
+}
+
+#[test]
 fn a_page_of_two_machines_works_in_chromium() {
     let desk = Desk::new();
     let program = example("run-up.ngc");

@@ -85,8 +85,51 @@ async function links(tab, name) {
   expect((await line()) === picked[1], `${name}: a click on a peak shows another line`);
   expect((await tab.textContent("#details .source code")) === (picked[2] || "no text at hand"), `${name}: its text is not shown`);
   if (moves && bright !== null) await onPath(tab, name, place);
+  await voltage(tab, name);
   if (await tab.evaluate(() => COMPARED !== null)) await both(tab, name);
   if (await tab.evaluate(() => SET !== null)) await programs(tab, name);
+}
+
+/** The voltage below the power: a click picks a block, the cursor and the zoom go along. */
+async function voltage(tab, name) {
+  const shown = await tab.evaluate(() => {
+    const low = CHARTS.findIndex((it) => it.box.classList.contains("volts"));
+    if (low < 0) return { low, any: SIDES.some((which) => DATA.voltage[which.name].length > 0) };
+    const { plot, which } = CHARTS[low];
+    plot.over.scrollIntoView({ block: "center" });
+    const lead = which.bar.findIndex((bar, place) => which.to[place] > which.from[place]);
+    const middle = (which.from[lead] + which.to[lead]) / 2;
+    const { width, height } = plot.ctx.canvas;
+    const pixels = plot.ctx.getImageData(0, 0, width, height).data;
+    let drawn = 0;
+    for (let at = 3; at < pixels.length; at += 4) drawn += pixels[at] > 0;
+    const titles = voltages(which).map((curve) => curve.title);
+    return { low, left: plot.valToPos(middle, "x"), drawn, titles, label: CHARTS[low].box.getAttribute("aria-label"), any: true };
+  });
+  expect(shown.low >= 0 || !shown.any, `${name}: a voltage is known and not drawn`);
+  if (shown.low < 0) return;
+  expect(shown.drawn > 500, `${name}: the chart of the voltage is empty`);
+  expect(shown.titles.every((title) => shown.label.includes(title)), `${name}: the label of the voltage is ${shown.label}`);
+  const over = tab.locator(".u-over").nth(shown.low);
+  await over.click({ position: { x: shown.left, y: 20 } });
+  const [line, power, tip] = await tab.evaluate((low) => {
+    const { plot, which } = CHARTS[low];
+    const above = CHARTS.find((it) => it.which === which && !it.box.classList.contains("volts"));
+    const own = block(PICKED);
+    const when = span(own, which);
+    const at = plot.posToVal(plot.cursor.left, "x");
+    return [when[0] - 1e-3 * CHARTS[low].end <= at && at <= when[1] + 1e-3 * CHARTS[low].end, Math.abs(above.plot.cursor.left - plot.cursor.left), plot.over.querySelector(".tip").textContent];
+  }, shown.low);
+  expect(line, `${name}: a click on the voltage picks a block of another time`);
+  expect(power < 1, `${name}: the cursor of the power is ${power} px from that of the voltage`);
+  expect(/\d V/.test(tip), `${name}: the voltage is not said: ${tip}`);
+  await tab.evaluate(() => near());
+  const scales = await tab.evaluate((low) => {
+    const { which } = CHARTS[low];
+    return CHARTS.filter((it) => it.which === which).map((it) => [it.plot.scales.x.min, it.plot.scales.x.max].join());
+  }, shown.low);
+  expect(new Set(scales).size === 1, `${name}: charts of one program show other times: ${scales.join("; ")}`);
+  await tab.evaluate(() => zoom(null));
 }
 
 /** Programs that were limited together: a link shows the other one, with its own figures. */

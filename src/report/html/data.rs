@@ -10,6 +10,7 @@ use super::columns::{column, drawn, figure, known, share, time, words};
 use super::figures;
 use super::shares::{Moment, PageSeries};
 use super::shown::Page;
+use super::voltage;
 use crate::machine::{ALL_AXES, AXES, RapidPath};
 
 /// The rows that anything on the page is about, each once, by their place.
@@ -68,6 +69,7 @@ pub(super) fn data(page: &Page<'_>) -> Value {
             "before": page.before.map(|series| shares(page, series)),
             "after": page.after.map(|series| shares(page, series)),
         },
+        "voltage": voltage::data(page),
         "moments": {
             "before": moments(page.before),
             "after": moments(page.after),

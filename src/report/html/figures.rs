@@ -6,7 +6,7 @@ use super::columns::{figure, known};
 use super::shown::{Compared, Found, Page};
 use crate::machine::{Converter, Machine};
 use crate::pipeline::{Certificate, LimitSummary, OverTime, Summary, Unfit};
-use crate::power::{Measure, PowerModel};
+use crate::power::PowerModel;
 use crate::report::checked::Verdict;
 use crate::report::over_time;
 
@@ -180,10 +180,7 @@ fn help(unfit: &Unfit) -> Option<Value> {
 /// What is said of limits over time; `machine` is the name of the machine, where there are two.
 fn over_time_list(summary: &Summary, machine: &str) -> Vec<Value> {
     let item = |found: &OverTime| {
-        let above_w = match found.rating.measure {
-            Measure::Overload { above_w, .. } => Some(above_w),
-            _ => None,
-        };
+        let overload = over_time::overload(found);
         json!({
             "machine": machine,
             "title": found.title(),
@@ -191,7 +188,8 @@ fn over_time_list(summary: &Summary, machine: &str) -> Vec<Value> {
             "fits": found.rating.fits(),
             "line": found.rating.line,
             "time_s": figure(found.rating.time_s),
-            "above_w": known(above_w, figure),
+            "above_w": known(overload.as_ref().map(|it| it.0), figure),
+            "label": overload.map(|it| it.1),
             "help": if found.rating.fits() { "" } else { found.help() },
         })
     };

@@ -18,10 +18,12 @@ mod page;
 mod path;
 mod peaks;
 mod picture;
+mod picture_voltage;
 mod rows;
 mod set_page;
 mod shares;
 mod shown;
+mod voltage;
 
 pub(super) use picture::escaped;
 

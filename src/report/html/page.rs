@@ -22,9 +22,10 @@ const LICENCES: [&str; 4] = [
     "\nthree.js\n\n",
     include_str!("vendor/three.LICENSE"),
 ];
-const SCRIPTS: [&str; 6] = [
+const SCRIPTS: [&str; 7] = [
     include_str!("page/data.js"),
     include_str!("page/charts.js"),
+    include_str!("page/voltage.js"),
     include_str!("page/overlay.js"),
     include_str!("page/space.js"),
     include_str!("page/tables.js"),

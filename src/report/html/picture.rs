@@ -6,10 +6,13 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
+use super::bars::Bar;
 use super::columns_drawn::{self, Peaks};
 use super::data::{channel_places, channels};
+use super::picture_voltage;
 use super::shares::Span;
 use super::shown::Page;
+use super::voltage::{overloads, voltages};
 use crate::power::PowerModel;
 use crate::report::chart::{Frame, Scale, grid};
 use crate::report::quantity::{duration, power};
@@ -20,6 +23,8 @@ const LEFT: f64 = 80.0;
 const RIGHT: f64 = 20.0;
 const TOP: f64 = 80.0;
 const GAP: f64 = 60.0;
+const LIMIT: &str = "#b00020";
+const OVERLOAD: &str = "#a04a00";
 /// By axis, then spindle, cutting and base load.
 const COLOURS: [&str; 13] = [
     "#4269d0", "#e3891b", "#3a9d5d", "#c4457a", "#7a5ac2", "#1c9aa8", "#a0673a", "#6b8e23",
@@ -28,26 +33,10 @@ const COLOURS: [&str; 13] = [
 
 /// Writes the picture.
 pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
-    let bars = &page.rows.bars.list;
-    let of = |side: usize| -> Peaks {
-        let bar = |it: &super::bars::Bar| match side {
-            0 => [it.span_s[0], it.span_s[1], it.most_w[0], it.most_w[1]],
-            _ => [
-                it.after_s[0],
-                it.after_s[1],
-                it.most_after_w[0],
-                it.most_after_w[1],
-            ],
-        };
-        let mut peaks: Peaks = bars.iter().map(bar).collect();
-        // A move may wait for the spindle in one program and not in the other.
-        peaks.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        peaks
-    };
-    let mut panels = vec![("Bus power", of(0), page.before)];
+    let mut panels = vec![("Bus power", peaks_of(page, false), page.before)];
     if page.has_two() {
         panels[0].0 = "Before";
-        panels.push(("After", of(1), page.after));
+        panels.push(("After", peaks_of(page, true), page.after));
     }
     let all = || panels.iter().flat_map(|panel| &panel.1);
     let most_s = all().map(|it| it[1]).filter(|it| it.is_finite());
@@ -56,10 +45,16 @@ pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
         *peaks = columns_drawn::peaks(std::mem::take(peaks), most_s);
     }
     let all = || panels.iter().flat_map(|panel| &panel.1);
-    let limits = limits_w(page);
+    let limits = lines(page);
     let (least_w, most_w) = extent(all().copied(), &limits);
     let room = 0.06 * (most_w - least_w);
-    let height = TOP + (PANEL + GAP) * panels.len() as f64;
+    let volts = [false, true].map(|after| voltages(page, after && page.has_two()));
+    let low = if volts.iter().all(Vec::is_empty) {
+        0.0
+    } else {
+        picture_voltage::PANEL + GAP
+    };
+    let height = TOP + (PANEL + GAP + low) * panels.len() as f64;
     writeln!(
         out,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" \
@@ -71,8 +66,8 @@ pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
         escaped(&page.machine.name)
     )?;
     out.write_all(legend(page).as_bytes())?;
-    for (index, (name, peaks, series)) in panels.into_iter().enumerate() {
-        let top = TOP + (PANEL + GAP) * index as f64;
+    for (index, ((name, peaks, series), volts)) in panels.into_iter().zip(&volts).enumerate() {
+        let top = TOP + (PANEL + GAP + low) * index as f64;
         let time = Scale::new(0.0, most_s, LEFT, WIDTH - RIGHT);
         let value = Scale::new(least_w - room, most_w + room, top + PANEL, top);
         let frame = Frame {
@@ -88,43 +83,106 @@ pub(super) fn write(page: &Page<'_>, out: &mut dyn Write) -> io::Result<()> {
             areas(&mut text, page, &spans, &time, &value);
         }
         outline(&mut text, &peaks, &time, &value);
-        for limit_w in limits.iter().filter(|it| it.is_finite()) {
-            let y = value.at(*limit_w);
-            let right = WIDTH - RIGHT;
-            let _ = writeln!(
-                text,
-                "<path d=\"M{LEFT} {y:.2}H{right}\" stroke=\"#b00020\" stroke-dasharray=\"6 4\"/>\
-                 <text x=\"{}\" y=\"{:.2}\" text-anchor=\"end\" fill=\"#b00020\" \
-                 stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\">{}</text>",
-                right - 4.0,
-                y - 4.0,
-                power(*limit_w)
-            );
+        for line in &limits {
+            line.draw(&mut text, &value);
+        }
+        if !volts.is_empty() {
+            let frame = Frame {
+                top: top + PANEL + GAP,
+                bottom: top + PANEL + low,
+                unit: " V",
+                ..frame
+            };
+            let name = escaped(&picture_voltage::name(volts));
+            text += &picture_voltage::panel(&name, volts, &frame, &time);
         }
         out.write_all(text.as_bytes())?;
     }
     writeln!(out, "</svg>")
 }
 
+/// The peaks of a program.
+fn peaks_of(page: &Page<'_>, after: bool) -> Peaks {
+    let bar = |it: &Bar| {
+        let ([from_s, to_s], [drawn_w, back_w]) = if after {
+            (it.after_s, it.most_after_w)
+        } else {
+            (it.span_s, it.most_w)
+        };
+        [from_s, to_s, drawn_w, back_w]
+    };
+    let mut peaks: Peaks = page.rows.bars.list.iter().map(bar).collect();
+    // A move may wait for the spindle in one program and not in the other.
+    peaks.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    peaks
+}
+
 /// From the least to the largest power of these peaks and lines, and no less than a watt.
-fn extent(peaks: impl Iterator<Item = [f64; 4]>, limits_w: &[f64]) -> (f64, f64) {
+fn extent(peaks: impl Iterator<Item = [f64; 4]>, lines: &[Line]) -> (f64, f64) {
     let powers = peaks.flat_map(|it| [it[2], -it[3]]);
-    let powers = powers.chain(limits_w.iter().copied()).chain([0.0, 1.0]);
-    let powers = powers.filter(|it| it.is_finite());
+    let powers = powers.chain(lines.iter().map(|line| line.power_w));
+    let powers = powers.chain([0.0, 1.0]).filter(|it| it.is_finite());
     powers.fold((0.0, 0.0), |(least, most): (f64, f64), it| {
         (least.min(it), most.max(it))
     })
 }
 
-/// The limits of all converters, W: drawn up, fed back down.
-fn limits_w(page: &Page<'_>) -> Vec<f64> {
+/// A power that is permitted, for ever or for a time.
+struct Line {
+    power_w: f64,
+    label: String,
+    lasts: bool,
+}
+
+impl Line {
+    /// For ever, with its name on the right; for a time, on the left.
+    fn draw(&self, text: &mut String, value: &Scale) {
+        let y = value.at(self.power_w);
+        let (colour, dashes) = if self.lasts {
+            (LIMIT, "6 4")
+        } else {
+            (OVERLOAD, "2 4")
+        };
+        let (anchor, x) = if self.lasts {
+            ("end", WIDTH - RIGHT - 4.0)
+        } else {
+            ("start", LEFT + 4.0)
+        };
+        let right = WIDTH - RIGHT;
+        let _ = writeln!(
+            text,
+            "<path d=\"M{LEFT} {y:.2}H{right}\" stroke=\"{colour}\" stroke-dasharray=\"{dashes}\"/>\
+             <text x=\"{x}\" y=\"{:.2}\" text-anchor=\"{anchor}\" fill=\"{colour}\" \
+             stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\">{}</text>",
+            y - 4.0,
+            escaped(&self.label)
+        );
+    }
+}
+
+/// The limits of all converters, drawn up, fed back down, and the powers from which overload
+/// counts.
+fn lines(page: &Page<'_>) -> Vec<Line> {
     let model = PowerModel::new(page.machine);
     let converters = 0..page.machine.converters.len();
     let limits = converters.flat_map(|it| {
         let back = model.regen_limit_w(it).map(|limit_w| -limit_w);
         [Some(model.limit_w(it)), back]
     });
-    limits.flatten().collect()
+    let limit = |power_w: f64| Line {
+        power_w,
+        label: power(power_w),
+        lasts: true,
+    };
+    let overload = |(power_w, label): (f64, String)| Line {
+        power_w,
+        label,
+        lasts: false,
+    };
+    let limits = limits.flatten().filter(|it| it.is_finite()).map(limit);
+    limits
+        .chain(overloads(page).into_iter().map(overload))
+        .collect()
 }
 
 fn heading(name: &str, peaks: &Peaks) -> String {
@@ -140,12 +198,11 @@ fn legend(page: &Page<'_>) -> String {
     let own = channels(page).into_iter().enumerate();
     let own = own.filter(|(index, _)| draws(page, *index));
     let own = own.map(|(index, name)| (colour(page, index), name));
-    let line = [
-        ("#222222", "peak of the block (report)"),
-        ("#b00020", "limit"),
-    ];
+    let line = [("#222222", "peak of the block (report)"), (LIMIT, "limit")];
+    let overload = (!overloads(page).is_empty()).then_some((OVERLOAD, "overload counts above"));
     let line = line
         .into_iter()
+        .chain(overload)
         .map(|(colour, name)| (colour, name.to_owned()));
     for (colour, name) in own.chain(line) {
         let _ = writeln!(

@@ -7,7 +7,7 @@ use super::door::{Door, Sample, VALUES};
 use super::rows::PageRows;
 use crate::machine::{AXES, Machine};
 use crate::pipeline::SeriesSink;
-use crate::power::Instant;
+use crate::power::{Instant, VoltageCurve};
 
 /// Spans that are kept.
 const SPANS_MAX: usize = 4000;
@@ -68,6 +68,8 @@ pub struct PageSeries {
     now: usize,
     /// What is fed back, J.
     pub(super) fed_back_j: f64,
+    /// The voltages of buses as the limits over time have them.
+    pub(super) voltages: Vec<VoltageCurve>,
 }
 
 impl PageSeries {
@@ -84,6 +86,7 @@ impl PageSeries {
             moments: moments(machine, rows, side),
             now: 0,
             fed_back_j: 0.0,
+            voltages: Vec::new(),
         }
     }
 
@@ -168,6 +171,14 @@ impl SeriesSink for PageSeries {
             self.keep(kept);
         }
         Ok(())
+    }
+
+    fn wants_voltages(&self) -> bool {
+        true
+    }
+
+    fn voltages(&mut self, curves: Vec<VoltageCurve>) {
+        self.voltages = curves;
     }
 }
 

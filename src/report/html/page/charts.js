@@ -1,13 +1,16 @@
 // Power over time: axes, zoom and cursor by uPlot, areas and lines drawn here.
 const CHARTS = [];
 const HIDDEN = new Set();
+/** The cursor of one chart goes along in the other charts of the same program; nothing else does. */
+const FOLLOWED = { pub: (type) => type === "mousemove" || type === "mouseleave", sub: () => true };
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 /** The same range of power in all charts, W. */
 function range() {
   const known = (list) => list.filter((value) => value !== null);
   const limits = SIDES.flatMap((which) => which.limits).flatMap((it) => [it.limit_w ?? 0, -(it.regen_limit_w ?? 0)]);
-  let [least, most] = [Math.min(0, ...limits), Math.max(1, ...limits)];
+  const overloads = HEAD.over_time.map((it) => it.above_w ?? 0);
+  let [least, most] = [Math.min(0, ...limits), Math.max(1, ...limits, ...overloads)];
   for (const which of SIDES) {
     for (const value of known(which.peak)) most = Math.max(most, value);
     for (const value of known(which.back)) least = Math.min(least, -value);
@@ -16,10 +19,13 @@ function range() {
   return [least - room, most + room];
 }
 
+/** What a chart of power shows: its range, its unit, its drawing, and what it says of a bar. */
+const POWER = { range, space: 30, label: (value) => (value === 0 ? "0" : power(value)), draw, say: (which, place) => power(which.peak[place]) };
+
 /** One chart. */
-function chart(which, box) {
+function chart(which, box, what = POWER) {
   const end = Math.max(...SIDES.map((it) => it.to[it.to.length - 1] ?? 0), 1e-3);
-  const [least, most] = range();
+  const [least, most] = what.range();
   const axis = () => ({
     stroke: () => css("--quiet"),
     grid: { stroke: () => css("--grid"), width: 1 },
@@ -35,10 +41,10 @@ function chart(which, box) {
     series: [{}, { show: true, paths: () => null, points: { show: false } }],
     axes: [
       { ...axis(), values: labels },
-      { ...axis(), size: 76, values: (_, values) => values.map((value) => (value === 0 ? "0" : power(value))) },
+      { ...axis(), size: 76, space: what.space, values: (_, values) => values.map(what.label) },
     ],
-    cursor: { drag: { x: true, y: false, setScale: false }, points: { show: false }, y: false },
-    hooks: { draw: [(plot) => draw(plot, which)], setSelect: [(plot) => zoomed(plot, which)], setCursor: [(plot) => hover(plot, which)] },
+    cursor: { drag: { x: true, y: false, setScale: false }, points: { show: false }, y: false, sync: { key: which.overlay ? "overlay" : which.name, scales: ["x", null], setSeries: false, filters: FOLLOWED } },
+    hooks: { draw: [(plot) => what.draw(plot, which)], setSelect: [(plot) => zoomed(plot, which)], setCursor: [(plot) => hover(plot, which, what)] },
   };
   const plot = new uPlot(options, [[0, end], [least, most]], box);
   plot.over.addEventListener("dblclick", () => zoom(null));
@@ -101,34 +107,38 @@ function line(ctx, [from, to], y, colour, dash) {
   ctx.setLineDash([]);
 }
 
+/** What a line stands for, at one of its ends. */
+function label(ctx, ends, text, at, colour, left) {
+  ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+  ctx.textAlign = left ? "left" : "right";
+  const edge = left ? ends[0] + 6 * devicePixelRatio : ends[1] - 6 * devicePixelRatio;
+  const place = [text, edge, at - 5 * devicePixelRatio];
+  ctx.strokeStyle = css("--card");
+  ctx.lineWidth = 4 * devicePixelRatio;
+  ctx.strokeText(...place);
+  ctx.fillStyle = css(colour);
+  ctx.fillText(...place);
+}
+
 /** The limits with the margin taken off, and the powers that are permitted for a time. */
 function limits(ctx, which, ends, y, colour = "--limit", left = false) {
-  const label = (text, at) => {
-    ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
-    ctx.textAlign = left ? "left" : "right";
-    const edge = left ? ends[0] + 6 * devicePixelRatio : ends[1] - 6 * devicePixelRatio;
-    const place = [text, edge, at - 5 * devicePixelRatio];
-    ctx.strokeStyle = css("--card");
-    ctx.lineWidth = 4 * devicePixelRatio;
-    ctx.strokeText(...place);
-    ctx.fillStyle = css(colour);
-    ctx.fillText(...place);
-  };
   for (const limit of which.limits) {
     const name = limit.name ? ` ${limit.name}` : "";
     const margin = limit.margin > 0 ? `, ${percent(limit.margin)} margin` : "";
     if (limit.limit_w !== null) {
       line(ctx, ends, y(limit.limit_w), css(colour), [7, 4]);
-      label(`limit${name} ${power(limit.limit_w)}${margin}`, y(limit.limit_w));
+      label(ctx, ends, `limit${name} ${power(limit.limit_w)}${margin}`, y(limit.limit_w), colour, left);
     }
     if (limit.regen_limit_w !== null) {
       line(ctx, ends, y(-limit.regen_limit_w), css(colour), [7, 4]);
-      label(`fed back${name} ${power(limit.regen_limit_w)}`, y(-limit.regen_limit_w));
+      label(ctx, ends, `fed back${name} ${power(limit.regen_limit_w)}`, y(-limit.regen_limit_w), colour, left);
     }
   }
   for (const found of HEAD.over_time) {
     if (COMPARED && found.machine !== COMPARED.names[which.name === "after" ? 1 : 0]) continue;
-    if (found.above_w !== null) line(ctx, ends, y(found.above_w), css(colour), [2, 5]);
+    if (found.above_w === null) continue;
+    line(ctx, ends, y(found.above_w), css(colour), [2, 5]);
+    label(ctx, ends, found.label, y(found.above_w), colour, !left);
   }
 }
 
@@ -220,7 +230,7 @@ function under(plot, which, left, top) {
   return place === null ? null : { which, place };
 }
 
-function hover(plot, shown) {
+function hover(plot, shown, what) {
   const { left, top } = plot.cursor;
   const tip = plot.over.querySelector(".tip") ?? plot.over.appendChild(make("div", { class: "tip" }));
   const found = left >= 0 ? under(plot, shown, left, top) : null;
@@ -231,7 +241,7 @@ function hover(plot, shown) {
   const rows = at(BARS.rows, which.bar[place]);
   const more = rows > 1 ? ` and ${rows - 1} more` : "";
   tip.replaceChildren(
-    make("strong", {}, `${shown.overlay ? `${which.title}: ` : ""}${power(which.peak[place])}`), ` at ${moment(plot.posToVal(left, "x"))}`,
+    make("strong", {}, `${shown.overlay ? `${which.title}: ` : ""}${what.say(which, place, plot.posToVal(left, "x"))}`), ` at ${moment(plot.posToVal(left, "x"))}`,
     make("br"), `${own.where}${more}`, make("br"), make("code", {}, own.text),
   );
   const right = left > plot.over.clientWidth / 2;
@@ -297,6 +307,7 @@ function drawCharts() {
     const box = make("div", { class: "chart", role: "img", "aria-label": label });
     charts.append(heading, box);
     CHARTS.push(chart(which, box));
+    drawVoltage(charts, which);
   }
   const legend = element("legend");
   CHANNELS.forEach((name, channel) => {
@@ -312,6 +323,8 @@ function drawCharts() {
     legend.append(make("li", {}, button));
   });
   legend.append(make("li", { class: "key" }, make("i", { class: "peak" }), "block peak"), make("li", { class: "key" }, make("i", { class: "limit" }), "limit"));
+  if (HEAD.over_time.some((it) => it.above_w !== null)) legend.append(make("li", { class: "key" }, make("i", { class: "overload" }), "overload counts above"));
+  voltageKeys(legend);
   element("whole").addEventListener("click", () => zoom(null));
   element("near").addEventListener("click", near);
   new ResizeObserver(() => {

@@ -53,6 +53,7 @@ function notes() {
   const limits = SIDES.flatMap((which) => which.limits);
   if (SIDES.some((it) => it.limits.length > 1)) power.push("With several converters the line is the peak of the one that is loaded most; the areas are all of them together.");
   if (limits.some((it) => it.credit_regen)) power.push("What is fed back feeds the other axes: the line is the difference of both areas.");
+  power.push(...voltageNotes());
   element("power-note").textContent = power.join(" ");
   const path = [`Machine coordinates${SPACE ? `, ${SPACE.size.map((it) => digits(it)).join(" × ")} mm` : ""}, drawn to within ${PATH.error_mm < 0.01 ? "0.01" : digits(PATH.error_mm)} mm.`];
   if (PATH.independent) path.push("Rapids of axes that move each for itself are drawn as lines from start to end.");
