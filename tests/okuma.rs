@@ -244,6 +244,26 @@ M02
 ");
 }
 
+/// The plane of a lathe is ZX, L is an arc's radius (OSP-P200L 5238-E, "Circular Interpolation"),
+/// and another tool offset, which is not known, moves all.
+#[test]
+fn lathes_have_arcs_in_their_plane() {
+    let lathe = machine("okuma-lathe");
+    let program = "G0 X60 Z2\nG1 X40 Z-10 F0.2 S500 M3\nG3 X50 Z-15 L5\nG2 X60 Z-20 I5\nM2\n";
+    assert_snapshot!(listing(program, &lathe, None), @r"
+1 rapid X30 Z2
+2 feed X20 Z-10 F100
+3 arc X25 Z-15 center -15,20 turns 0.25 F100
+4 arc X30 Z-20 center -15,30 turns -0.25 F100
+");
+    let peak_w = |tool: &str| {
+        let program = format!("T0101\nG0 X50 Z5\n{tool}\nG0 X50 Z6\nM2\n");
+        gwatt::check(program.as_str(), &lathe).unwrap().peak_w
+    };
+    let [same, other, none] = ["T0101", "T0202", "T0200"].map(peak_w);
+    assert!(other > same && none == other, "{other} {same} {none}");
+}
+
 /// Rows of holes, once with variables and a subprogram, once as moves.
 #[test]
 fn parametrised_and_expanded_twins_move_alike() {

@@ -127,6 +127,8 @@ fn controller() -> Controller {
             mill_cycles: false,
             pecks_return_to_r: false,
             peck_clearance_mm: 1.0,
+            cycles_repeat_by_l: false,
+            pecks_by_ijk: false,
             escape_mm: None,
             groove_return_mm: None,
             type_2: None,

@@ -14,8 +14,9 @@ use gwatt::rules::{find, index, rules};
 use crate::layers::root;
 
 /// Texts of the code in kebab case that are no rules.
-const NO_RULES: [&str; 27] = [
+const NO_RULES: [&str; 28] = [
     "anti-resonance",
+    "as-type-1",
     "beckhoff-as1000",
     "mitsubishi-hg-kn",
     "sanyo-ss242",

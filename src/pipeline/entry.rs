@@ -302,11 +302,12 @@ impl Entry {
         let language = &machine.controller.language;
         let mut words = self.block.words.iter();
         // By a word in it, or by lines around it.
-        let by_lines = language.stops_by_mode()
-            || language.family.facts().stops_by_exact_path
-                && language.g61_1 == PathMode::ExactStop
-                && self.one_corner
-                && self.mark.blend_words().is_some();
+        let by_lines =
+            language.stops_by_mode() && self.one_corner && self.mark.blend_again().is_some()
+                || language.family.facts().stops_by_exact_path
+                    && language.g61_1 == PathMode::ExactStop
+                    && self.one_corner
+                    && self.mark.blend_words().is_some();
         !words.any(|word| word.letter == b'G' && (61.0..=64.0).contains(&word.value))
             && (language.exact_stop_word.is_some() || by_lines && !self.facts.compensated)
     }

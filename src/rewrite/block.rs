@@ -392,7 +392,7 @@ impl<'m> Rewriter<'m> {
         } else if self.blend_words.is_none() {
             if self.machine.controller.language.stops_by_mode() {
                 self.insert_line("G61", out);
-                self.blend_words = Some("G64".to_owned());
+                self.blend_words = view.after.blend_again();
             } else {
                 self.insert_line(EXACT_STOP, out);
                 self.blend_words = view.after.blend_words();

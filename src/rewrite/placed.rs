@@ -8,9 +8,21 @@ use crate::edit::{Edit, apply};
 use crate::interpret::{Move, MoveKind, Step};
 use crate::machine::{AxisSet, AxisValues};
 use crate::source::split_line_end;
-use crate::syntax::Word;
 
 impl Singles<'_> {
+    /// Whether a word of a cycle holds until the cycle ends.
+    #[must_use]
+    pub fn holds(&self, letter: u8) -> bool {
+        b"ZRQPIJ".contains(&letter) || letter == b'K' && self.language.pecks_by_ijk
+    }
+
+    /// Whether a block has its cycle repeated.
+    fn repeats(&self, of: &CycleBlock<'_>) -> bool {
+        let by_k = !self.language.cycles_repeat_by_l;
+        let mut words = of.block.words.iter();
+        words.any(|word| (word.letter == b'L' || by_k && word.letter == b'K') && word.value != 1.0)
+    }
+
     /// The block with its way to the hole on a line before it, and with the words of the
     /// cycle that such a line ends: `held` gives the last of each in this series of blocks.
     ///
@@ -32,7 +44,7 @@ impl Singles<'_> {
             return Ok(Placed { way, block });
         }
         let ways = ways(of.steps);
-        if !of.modal.absolute || of.block.words.iter().any(repeats) {
+        if !of.modal.absolute || self.repeats(of) {
             return Err("its places are increments, or it repeats");
         }
         let mut lines = Lines::new(of, &place);
@@ -94,7 +106,7 @@ impl Singles<'_> {
             [way, back] if !returns_to_r && back.len() == 1 => (way, back.first()),
             _ => return Err(WHY),
         };
-        if way.is_empty() || of.block.words.iter().any(repeats) {
+        if way.is_empty() || self.repeats(of) {
             return Err(WHY);
         }
         let mut lines = Lines::new(of, &place);
@@ -159,11 +171,6 @@ fn distance(of: &CycleBlock<'_>) -> &'static [u8] {
     let mut words = of.block.words.iter();
     let says = words.any(|word| word.letter == b'G' && word.value == 90.0);
     if says { b"G90 " } else { b"" }
-}
-
-/// Whether a word has a cycle repeated.
-fn repeats(word: &Word) -> bool {
-    matches!(word.letter, b'K' | b'L') && word.value != 1.0
 }
 
 /// The rapids before each run of other moves: those that lead to a hole, and those that lead

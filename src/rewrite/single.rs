@@ -6,12 +6,15 @@
 //! the pipeline, which reads them again.
 
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 use std::fmt::Write as _;
 
 use super::hole::Placed;
 use super::number::{decimal, rounded, rounded_finely, with_blanks};
 use crate::edit::{Edit, apply};
-use crate::interpret::{Action, ActionKind, Corner, FeedMode, Modal, Motion, Move, MoveKind, Step};
+use crate::interpret::{
+    Action, ActionKind, Arc, Corner, FeedMode, Modal, Motion, Move, MoveKind, Step,
+};
 use crate::machine::{ALL_AXES, AXES, AxisSet, AxisValues, Language, Lathe, Machine};
 use crate::source::{Span, split_line_end};
 use crate::syntax::{Block, Word};
@@ -326,6 +329,11 @@ impl<'m> Singles<'m> {
             let _ = write!(words, " {letter}{}", decimal(value, true));
         }
         lines.at = end;
+        // Written, an arc shorter than a digit would be a full circle.
+        let is_short = |arc: &Arc| arc.sweep_rad.abs() < PI;
+        if !moves && mv.arc.as_ref().is_none_or(is_short) {
+            return Ok(());
+        }
         if let Some(arc) = &mv.arc {
             if of.modal.arc_absolute || arc.sweep_rad.abs() >= std::f64::consts::TAU {
                 return Err("its arcs are full circles, or have absolute centres");
@@ -341,9 +349,6 @@ impl<'m> Singles<'m> {
                 let offset = rounded((center - mv.start[axis]) / unit_mm - moved);
                 let _ = write!(words, " {}{}", char::from(*letter), decimal(offset, true));
             }
-        }
-        if !moves && mv.arc.is_none() {
-            return Ok(());
         }
         // On a lathe all moves of a cycle have the F in force, but for the way out of a bore.
         let lathe = self.language.dialect.lathe.is_some() && !OUT_FASTER.contains(&of.number);

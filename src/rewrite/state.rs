@@ -64,6 +64,16 @@ impl Mark {
         Some(words)
     }
 
+    /// The words that end the exact stop of G61: those that let corners be rounded as they
+    /// were, or G64 alone where no word has said how they are.
+    #[must_use]
+    pub fn blend_again(&self) -> Option<String> {
+        match self.corner {
+            None => Some(String::from("G64")),
+            Some(_) => self.blend_words(),
+        }
+    }
+
     /// A word of a length, where it can be written exactly.
     fn length_word(&self, letter: char, length_mm: f64) -> Option<String> {
         let length = length_mm / self.mm_per_unit;

@@ -81,6 +81,58 @@ fn fanuc_pecks_taps_and_bores() {
     ");
 }
 
+/// Haas mill operator's manual (96-8000), "G73" and "G83": I, J and K are a first peck, by how
+/// much each is smaller, and the smallest; K next to Q is after how much G73 returns to R. L
+/// repeats, K does not. 1.27 mm is Setting 22.
+#[test]
+fn pecks_of_a_haas_become_smaller() {
+    let program = "G21 G90 S500 M3\nG0 X0 Z10\nG99 G83 X1 Z-8 R2 I4 J1 K2.5 F100\nX2\nG80\nG73 X3 Z-6 R2 Q2 K4\nG80\n";
+    assert_snapshot!(moves("haas", program), @r"
+    2 rapid 0 0 10
+    3 rapid 1 0 10
+    3 rapid 1 0 2
+    3 feed 1 0 -2 F100
+    3 rapid 1 0 2
+    3 rapid 1 0 -0.73
+    3 feed 1 0 -5 F100
+    3 rapid 1 0 2
+    3 rapid 1 0 -3.73
+    3 feed 1 0 -7.5 F100
+    3 rapid 1 0 2
+    3 rapid 1 0 -6.23
+    3 feed 1 0 -8 F100
+    3 rapid 1 0 2
+    4 rapid 2 0 2
+    4 feed 2 0 -2 F100
+    4 rapid 2 0 2
+    4 rapid 2 0 -0.73
+    4 feed 2 0 -5 F100
+    4 rapid 2 0 2
+    4 rapid 2 0 -3.73
+    4 feed 2 0 -7.5 F100
+    4 rapid 2 0 2
+    4 rapid 2 0 -6.23
+    4 feed 2 0 -8 F100
+    4 rapid 2 0 2
+    6 rapid 3 0 2
+    6 feed 3 0 0 F100
+    6 rapid 3 0 1.27
+    6 feed 3 0 -2 F100
+    6 rapid 3 0 2
+    6 rapid 3 0 -0.73
+    6 feed 3 0 -4 F100
+    6 rapid 3 0 -2.73
+    6 feed 3 0 -6 F100
+    6 rapid 3 0 2
+    ");
+    assert_snapshot!(moves("haas", "S500 M3\nG99 G83 X1 Z-8 R2 Q3 K6 F100\n"), @"2 cycle-word: I, J and K go together, without Q; K alone goes with Q in G73 | check the number");
+    // A shift is another thing: G76 has that of Q.
+    let program = "S500 M3\nG99 G83 X1 Z-3 R2 I5 J1 K1 F100\nG76 X9 Z-1 R2 Q0.5\n";
+    assert!(moves("haas", program).contains("\n3 rapid 9.5 0 -1\n"));
+    assert_snapshot!(moves("haas", "S500 M3\nG99 G81 X1 Z-8 R2 K2 F100\n"), @"2 unused-word: nothing in this block uses the K word | take it out, or write the word that it belongs to");
+    assert_snapshot!(moves("mazak", "S500 M3\nG99 G83 X1 Z-8 R2 Q3 K2 F100\n"), @"2 unused-word: nothing in this block uses the K word | take it out, or write the word that it belongs to");
+}
+
 /// R that was never given is an increment of nothing: the hole begins at the initial level.
 #[test]
 fn without_r_a_hole_begins_where_it_is_called() {

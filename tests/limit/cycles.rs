@@ -302,6 +302,14 @@ fn any_program(random: &mut Random, controller: &str) -> String {
             "{level} G{number} X{x:?} Y{y:?} Z-{depth}. R{r}. F300."
         );
         match number {
+            73 | 83 if controller == "haas" => {
+                let words = [
+                    " Q2.5",
+                    " I3. J0.5 K1.5",
+                    if number == 73 { " Q2. K5." } else { " Q2." },
+                ];
+                text.push_str(words[random.below(3)]);
+            }
             73 | 83 => text.push_str(" Q2.5"),
             82 | 86 | 89 => text.push_str(if linuxcnc { " P0.25" } else { " P250" }),
             _ => {}
@@ -311,6 +319,8 @@ fn any_program(random: &mut Random, controller: &str) -> String {
             match random.below(5) {
                 0 => text.push_str(if linuxcnc {
                     "G91 X7.5 Z-2. R-1. L2\nG90 G80 G0 Z30.\nG81 X1. Z-1. R2.\n"
+                } else if controller == "haas" {
+                    "G91 X7.5 L2\nG90\n"
                 } else {
                     "G91 X7.5 K2\nG90\n"
                 }),

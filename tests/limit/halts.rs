@@ -91,6 +91,21 @@ fn each_control_has_its_own_word() {
     }
 }
 
+/// On a control without a word for one block, G64 comes back as it was written.
+#[test]
+fn g64_comes_back_with_its_tolerance() {
+    let shop = Shop::straight("iso", 600.0);
+    for mode in ["G64", "G64 P0.02"] {
+        let program = format!("G21 G90 {mode}\nG0 X1000. Y800.\nG1 X1010. F1000\nM30\n");
+        let (code, text, errors) = shop.limit(&program, "--allow feed");
+        assert_eq!(code, 0, "{errors}");
+        assert!(
+            text.contains(&format!("\n{mode}\nG1 X1010. F1000\n")),
+            "{text}"
+        );
+    }
+}
+
 /// Where no dwell is known to stop the axes, the word stands in the block before a rapid that
 /// becomes a feed and in its own; at 600 W both axes may run at F26404.
 #[test]

@@ -27,7 +27,7 @@ pub(super) fn lone_arc(run: &mut Run<'_, '_>) {
 impl Control<'_> {
     /// Whether an arc without a centre and a radius stands for a line.
     fn is_line(&self, run: &mut Run<'_, '_>) -> bool {
-        let shape = bit(b'I') | bit(b'J') | bit(b'K') | bit(b'R');
+        let shape = bit(b'I') | bit(b'J') | bit(b'K') | bit(self.radius_letter());
         let otherwise = self.machine.controller.language.arc_without_center;
         let line = otherwise != ArcWithoutCenter::Refused
             && run.words.unused & shape == 0
@@ -153,13 +153,23 @@ impl Control<'_> {
         turns
     }
 
+    /// The letter of an arc's radius.
+    pub(crate) fn radius_letter(&self) -> u8 {
+        let dialect = self.dialect();
+        if dialect.lathe.is_some() || dialect.diameter {
+            self.rules.lathe_radius
+        } else {
+            b'R'
+        }
+    }
+
     /// Geometry by R, or by I J K; `None` when it was reported.
     fn arc_geometry(&self, run: &mut Run<'_, '_>, ends: &Ends) -> Option<Result<Arc, ArcFault>> {
         let unit = self.modal.mm_per_unit;
         let letters = [b"IJK"[ends.plane[0]], b"IJK"[ends.plane[1]]];
         let offsets = letters.map(|letter| run.words.take(letter));
         let whole = run.whole();
-        if let Some(radius) = run.words.take(b'R') {
+        if let Some(radius) = run.words.take(self.radius_letter()) {
             if offsets.iter().any(Option::is_some) {
                 let message = "an arc with R and with a centre";
                 run.report
@@ -170,7 +180,10 @@ impl Control<'_> {
             return Some(arc::from_radius(ends, radius * unit));
         }
         if offsets == [None, None] {
-            let radius = self.rules.radius_word;
+            let radius = match self.radius_letter() {
+                b'R' => self.rules.radius_word.to_owned(),
+                letter => char::from(letter).to_string(),
+            };
             let message = format!(
                 "an arc without a centre ({} {}) or {radius}",
                 letters[0] as char, letters[1] as char

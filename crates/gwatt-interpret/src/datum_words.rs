@@ -69,7 +69,7 @@ impl Control<'_> {
     /// The tool or offset whose values were taken as 0, plus 1; 0 where all is known.
     fn guessed_tool(&self, axis: usize) -> u32 {
         let lathe = self.machine.controller.language.dialect.lathe.is_some();
-        let guessed = if lathe && self.rules.t_selects_offset {
+        let guessed = if self.t_is_offset() {
             self.tools.guessed
         } else if lathe {
             Some(self.tools.selected).filter(|tool| *tool != 0)

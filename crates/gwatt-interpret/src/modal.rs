@@ -2,7 +2,7 @@
 
 use super::code::Motion;
 use gwatt_machine::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
-use gwatt_machine::{Lathe, Machine, PathMode};
+use gwatt_machine::{AxisId, Lathe, Machine, PathMode, TurningPlane};
 use gwatt_motion::{Corner, FeedMode};
 
 /// The feed in force: value, unit and text of the F word that set it.
@@ -107,7 +107,7 @@ impl Modal {
         let language = &machine.controller.language;
         Self {
             motion: Motion::at_power_on(language),
-            plane: if language.dialect.lathe.is_some() {
+            plane: if language.dialect.lathe.is_some() || turns(machine) {
                 [2, 0, 1]
             } else {
                 [0, 1, 2]
@@ -138,5 +138,17 @@ impl Modal {
             spindle_rpm: 0.0,
             diameter: language.dialect.diameter,
         }
+    }
+}
+
+/// Whether the plane at power-on is ZX though the language has no G-code systems of lathes.
+fn turns(machine: &Machine) -> bool {
+    let has = |axis: AxisId| machine.axis_set.contains(axis as usize);
+    let language = &machine.controller.language;
+    let without_y = has(AxisId::X) && has(AxisId::Z) && !has(AxisId::Y);
+    match language.family.facts().turning_plane {
+        TurningPlane::Never => false,
+        TurningPlane::Diameters => language.dialect.diameter,
+        TurningPlane::Axes => language.dialect.diameter || without_y,
     }
 }

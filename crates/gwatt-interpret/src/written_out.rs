@@ -78,12 +78,12 @@ impl Interpreter<'_> {
         let control = &self.control;
         let language = &control.machine.controller.language;
         let lathe = language.dialect.lathe.is_some();
-        let offsets_unknown = if control.rules.t_selects_offset {
+        let offsets_unknown = if control.t_is_offset() {
             control.tools.guessed.is_some()
         } else {
-            control.tools.selected != 0
+            lathe && control.tools.selected != 0
         };
-        if lathe && offsets_unknown {
+        if offsets_unknown {
             return Some(
                 "the offsets of the lathe's tool are not known: give them with --tool-table",
             );

@@ -104,6 +104,10 @@ pub struct Language {
     /// How far G73 draws back, and how far above the last depth the rapid of
     /// G83 ends, mm; not of `Rs274`, which has it fixed.
     pub peck_clearance_mm: f64,
+    /// Canned cycles repeat by L alone; else by K too.
+    pub cycles_repeat_by_l: bool,
+    /// G73 and G83 take I, J and K: pecks that become smaller; K next to Q returns to R.
+    pub pecks_by_ijk: bool,
     /// How far the tool goes off after a pass of G71 and G72, and back after a peck of G74 and
     /// G75, where a lathe's program gives no R, mm; `None`: not known.
     pub escape_mm: Option<f64>,

@@ -36,6 +36,8 @@ pub struct FamilyFacts {
     pub feeds_in_machine_coordinates: bool,
     /// What G53 does under G91 differs: controls ignore it, or take it as an increment.
     pub increments_in_machine_differ: bool,
+    /// Where the plane at power-on is ZX, besides lathes with G-code systems.
+    pub turning_plane: TurningPlane,
     /// Canned cycles can be written out as single blocks.
     pub writes_out_cycles: bool,
     /// The way to a reference point is written in machine coordinates.
@@ -99,10 +101,22 @@ pub enum LevelWords {
     CodesAndNames,
 }
 
+/// Where the plane at power-on is ZX.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TurningPlane {
+    /// Nowhere.
+    Never,
+    /// Where words of X are diameters (OSP lathes).
+    Diameters,
+    /// There, and where X and Z have no Y with them (SINUMERIK: MD20150).
+    Axes,
+}
+
 const ISO: FamilyFacts = FamilyFacts {
     comment_to_line_end: false,
     feeds_in_machine_coordinates: false,
     increments_in_machine_differ: true,
+    turning_plane: TurningPlane::Diameters,
     writes_out_cycles: true,
     returns_in_machine_coordinates: false,
     reference_in_parameters: false,
@@ -127,6 +141,7 @@ const ISO: FamilyFacts = FamilyFacts {
 const RS274: FamilyFacts = FamilyFacts {
     feeds_in_machine_coordinates: true,
     increments_in_machine_differ: false,
+    turning_plane: TurningPlane::Never,
     reference_in_parameters: true,
     // LinuxCNC: convert_arc ("R I J K words all missing for arc"); grbl: error 26.
     arcs_need_words: true,
@@ -146,6 +161,7 @@ const RS274: FamilyFacts = FamilyFacts {
 /// What families without any of this have.
 const PLAIN: FamilyFacts = FamilyFacts {
     increments_in_machine_differ: false,
+    turning_plane: TurningPlane::Never,
     writes_out_cycles: false,
     motion_survives_cycles: false,
     level_by_g99: false,
@@ -166,6 +182,7 @@ const MARLIN: FamilyFacts = FamilyFacts {
 };
 
 const ISG: FamilyFacts = FamilyFacts {
+    turning_plane: TurningPlane::Axes,
     lower_of: LowerOf::Function {
         open: "MIN[",
         close: "]",
@@ -174,6 +191,7 @@ const ISG: FamilyFacts = FamilyFacts {
 };
 
 const SIEMENS: FamilyFacts = FamilyFacts {
+    turning_plane: TurningPlane::Axes,
     comment_to_line_end: true,
     writes_out_cycles: true,
     returns_in_machine_coordinates: true,

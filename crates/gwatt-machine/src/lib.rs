@@ -26,7 +26,7 @@ pub use axis::{ALL_AXES, AXES, Axis, AxisId, AxisKind, AxisSet, AxisValues, FURT
 pub use builtin::builtin_controller;
 pub use config::{Loaded, controller_schema, schema};
 pub use controller::*;
-pub use family::{Family, FamilyFacts, LevelWords, LowerOf};
+pub use family::{Family, FamilyFacts, LevelWords, LowerOf, TurningPlane};
 pub use knob::*;
 pub use levels::*;
 pub use look_ahead::*;

@@ -108,7 +108,7 @@ fn take_in(
         series.level = level.map(|bytes| (number, bytes));
     }
     for word in &cycle.block.words {
-        if HELD.contains(&word.letter) {
+        if singles.holds(word.letter) {
             let text = word.span.of(cycle.text).to_vec();
             series.held.insert(word.letter, text);
         }
@@ -320,8 +320,6 @@ const WITHOUT_POINT: &str = "numbers of the program have no decimal point, and w
      not known: say decimal_point under [language] of the machine file";
 /// Why a cycle stays as it is that drills in other files.
 const IN_FILE: &str = "it drills at places that stand in the file of a subprogram";
-/// Words that hold until a cycle ends.
-const HELD: &[u8] = b"ZRQPIJ";
 
 /// The series that is open has ended.
 fn close(open: &mut Option<Series>, all: &mut Vec<Series>) {

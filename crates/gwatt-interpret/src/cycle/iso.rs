@@ -6,24 +6,13 @@
 //! initial level (G98) or to R (G99). What was written once holds until G80 or
 //! a word of G0 to G3.
 
+use super::hole::{Hole, Pecks};
 use crate::control::{Control, Run};
 use crate::own_state::OwnState;
 use crate::special::Turning;
 use gwatt_machine::{ALL_AXES, AxisSet, AxisValues};
 use gwatt_motion::CYCLE as FIXED;
 use gwatt_motion::{ActionKind, FeedMode, MoveKind};
-
-/// One hole, in machine coordinates.
-pub(super) struct Hole {
-    pub(super) number: u16,
-    pub(super) r_mm: f64,
-    pub(super) bottom_mm: f64,
-    clear_mm: f64,
-    dwell_s: Option<f64>,
-    /// Depth of a peck; 0 in cycles without pecks.
-    pub(super) peck_mm: f64,
-    shift_mm: [f64; 2],
-}
 
 impl Control<'_> {
     /// A block of a canned cycle.
@@ -127,7 +116,8 @@ impl Control<'_> {
             return run.repeats(b'L');
         }
         // K may be a shift outside of XY.
-        if matches!(number, 760 | 870) && self.modal.plane[2] != 2 {
+        let shifts = matches!(number, 760 | 870) && self.modal.plane[2] != 2;
+        if shifts || self.machine.controller.language.cycles_repeat_by_l {
             return Some(1);
         }
         run.repeats(b'K')
@@ -177,16 +167,11 @@ impl Control<'_> {
             clear_mm: 0.0,
             dwell_s,
             peck_mm: 0.0,
+            pecks: Pecks::default(),
             shift_mm: [0.0; 2],
         };
         if matches!(number, 730 | 830) {
-            let depth = (r - bottom).abs() / unit;
-            self.special.held.q = self.cycle_q(Some(depth), run).or(self.special.held.q);
-            let Some(q) = self.special.held.q.filter(|q| *q != 0.0) else {
-                run.cycle_needs("Q", number);
-                return None;
-            };
-            hole.peck_mm = q.abs() * unit;
+            hole.pecks = self.iso_peck_words(number, (r - bottom).abs(), run)?;
             let message = format!(
                 "G73 and G83 stay {} mm off the last depth: a parameter of the control, \
                  peck_clearance_mm in the controller profile",
@@ -343,37 +328,6 @@ impl Control<'_> {
                 }
             }
         }
-        true
-    }
-
-    /// G73 and G83: in pecks; false when they are too many.
-    fn iso_pecks(&mut self, hole: &Hole, place: &mut AxisValues, run: &mut Run<'_, '_>) -> bool {
-        use MoveKind::{Feed, Rapid};
-        let normal = self.modal.plane[2];
-        let mut to = |control: &mut Self, run: &mut Run<'_, '_>, kind, level_mm| {
-            place[normal] = level_mm;
-            control.part(run, kind, place);
-        };
-        let off_mm = self.machine.controller.language.peck_clearance_mm;
-        let mut pecks = 1.0;
-        loop {
-            let depth_mm = hole.r_mm - hole.peck_mm * pecks;
-            if depth_mm <= hole.bottom_mm + 1e-9 {
-                break;
-            }
-            if !run.within_limits() {
-                return false;
-            }
-            to(self, run, Feed, depth_mm);
-            if hole.number == 830 {
-                to(self, run, Rapid, hole.r_mm);
-            }
-            to(self, run, Rapid, (depth_mm + off_mm).min(hole.r_mm));
-            pecks += 1.0;
-        }
-        to(self, run, Feed, hole.bottom_mm);
-        self.iso_wait(hole, run);
-        to(self, run, Rapid, hole.clear_mm);
         true
     }
 

@@ -1,6 +1,8 @@
 //! Canned cycles: a hole by one block. Each part is a move of its own.
 
+mod hole;
 mod iso;
+mod peck;
 mod rs274;
 mod tap;
 mod words;
@@ -18,8 +20,10 @@ pub(super) struct Held {
     pub(super) q: Option<f64>,
     /// Depth of a peck of a tap, as it was written.
     pub(super) tap_q: Option<f64>,
-    /// I, J, K as they were written.
+    /// I, J, K of shifts as they were written.
     pub(super) ijk: [Option<f64>; 3],
+    /// I, J, K of pecks as they were written.
+    pub(super) pecks: [Option<f64>; 3],
     /// The level at which the series of cycles began.
     pub(super) initial: Initial,
 }

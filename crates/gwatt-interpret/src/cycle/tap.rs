@@ -2,7 +2,7 @@
 //! centres, "Rigid tapping": "Peck rigid tapping", "Rigid tapping with extraction override"; Haas
 //! mill operator's manual, Setting 130).
 
-use super::iso::Hole;
+use super::hole::Hole;
 use crate::control::{Control, Run};
 use crate::special::Turning;
 use gwatt_machine::AxisValues;

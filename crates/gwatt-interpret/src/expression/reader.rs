@@ -191,12 +191,16 @@ impl<'t> Reader<'t> {
                 self.unknown.get_or_insert((reason, fault));
                 Ok(STAND_IN)
             }
-            Read::Missing => Err(self.fault(
-                "no-such-parameter",
-                format!("{name} has no value"),
-                "assign it before it is used",
-                start,
-            )),
+            Read::Missing => {
+                let is_global = matches!(&name, Name::Text(text) if text.starts_with('_'));
+                let help = if is_global {
+                    "assign it before it is used, or give its value with --set"
+                } else {
+                    "assign it before it is used"
+                };
+                let message = format!("{name} has no value");
+                Err(self.fault("no-such-parameter", message, help, start))
+            }
         }
     }
 

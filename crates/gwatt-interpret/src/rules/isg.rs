@@ -18,6 +18,7 @@ pub(crate) const RULES: LanguageRules = LanguageRules {
     returns_name_axes: false,
     tool_lengths: ToolLengths::Elsewhere,
     cycles: CycleWords::None,
+    t_selects_offset: false,
     ..iso::RULES
 };
 

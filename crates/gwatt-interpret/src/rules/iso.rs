@@ -38,6 +38,7 @@ pub(crate) const RULES: LanguageRules = LanguageRules {
     returns_suspend_frames: false,
     tools_are_listed: false,
     t_selects_offset: true,
+    lathe_radius: b'R',
     tool_lengths: ToolLengths::Offsets,
     tool_edges: false,
     offset_numbers_stay: true,

@@ -70,6 +70,8 @@ pub(crate) struct LanguageRules {
     pub tools_are_listed: bool,
     /// The last digits of a lathe's T select an offset.
     pub t_selects_offset: bool,
+    /// The word of an arc's radius on lathes.
+    pub lathe_radius: u8,
     pub tool_lengths: ToolLengths,
     /// D is an edge of the tool, which has its radius.
     pub tool_edges: bool,

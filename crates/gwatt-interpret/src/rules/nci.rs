@@ -18,5 +18,6 @@ pub(crate) const RULES: LanguageRules = LanguageRules {
     tool_lengths: ToolLengths::Elsewhere,
     corners_may_be_unknown: false,
     cycles: CycleWords::None,
+    t_selects_offset: false,
     ..iso::RULES
 };

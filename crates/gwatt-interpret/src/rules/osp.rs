@@ -7,7 +7,7 @@ use crate::osp::codes::refused_name;
 
 pub(crate) const RULES: LanguageRules = LanguageRules {
     refused_g: |number| refused_name(number).unwrap_or_else(|| refused_g_name(number)),
-    t_selects_offset: false,
+    lathe_radius: b'L',
     cycle_levels_by_m: true,
     whole_cycle_dwell_s: 1.0,
     kept: KeptVariables::Common,

@@ -34,6 +34,7 @@ pub(crate) const RULES: LanguageRules = LanguageRules {
     corners_may_be_unknown: false,
     cycles: CycleWords::Rs274,
     turns_tilt_arcs: true,
+    t_selects_offset: false,
     ..iso::RULES
 };
 

@@ -29,5 +29,6 @@ pub(crate) const RULES: LanguageRules = LanguageRules {
     cycles: CycleWords::None,
     stray_centres: true,
     radius_word: "CR",
+    t_selects_offset: false,
     ..iso::RULES
 };

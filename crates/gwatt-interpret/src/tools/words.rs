@@ -24,14 +24,20 @@ impl Control<'_> {
             self.tools.select(number);
         } else if number >= 0.0 && number <= f64::from(u32::MAX) {
             self.tools.select(number as u32);
-            if self.rules.t_selects_offset && self.dialect().lathe.is_some() {
+            if self.t_is_offset() {
                 self.offset_of_lathe(run);
             }
         }
     }
 
-    /// Fanuc's lathes: the last two digits of T are the number of an offset, 0 of none
-    /// ("Tool Offset"). The axes stay; the coordinates of the program change, where a table
+    /// Whether T puts offsets in force: on lathes.
+    pub(crate) fn t_is_offset(&self) -> bool {
+        let dialect = self.dialect();
+        self.rules.t_selects_offset && (dialect.lathe.is_some() || dialect.diameter)
+    }
+
+    /// Fanuc's and Okuma's lathes: the last two digits of T are the number of an offset, 0 of
+    /// none ("Tool Offset"; OSP-P200L 5238-E, "T Function"). The axes stay; the coordinates of the program change, where a table
     /// gives the offsets.
     fn offset_of_lathe(&mut self, run: &mut Run<'_, '_>) {
         let number = self.tools.selected % OFFSETS_OF_T;
@@ -121,7 +127,7 @@ impl Control<'_> {
     /// Says that a length which changes without a place of its axis may move it: by the
     /// length, where the offset moves axes and does not shift coordinates (Fanuc B-63944EN, "Tool
     /// Length Offset", parameter 5006 bit TOS).
-    fn note_length_alone(&self, form: ToolLength, span: Span, run: &mut Run<'_, '_>) {
+    fn note_length_alone(&mut self, form: ToolLength, span: Span, run: &mut Run<'_, '_>) {
         let moves = GCode::Reference.group() | GCode::MachineCoordinates.group();
         let changes = form != ToolLength::Off || self.tools.length.is_some();
         let said = run.words.g.iter().find_map(|(code, ..)| match code {
@@ -132,6 +138,15 @@ impl Control<'_> {
         let placed = run.words.has(ALL_AXES[LENGTH_AXIS].letter()) && absolute;
         let elsewhere = self.rules.tool_lengths != ToolLengths::Offsets;
         if elsewhere || !changes || placed || run.words.groups & moves != 0 {
+            return;
+        }
+        if run.words.has(ALL_AXES[LENGTH_AXIS].letter()) {
+            // How far it goes is not known then.
+            self.position.unknown.insert(LENGTH_AXIS);
+            let message = "an increment next to a tool length that changes: the length may come on \
+                           top of it, so that the move counts at its full speed; write the place \
+                           instead, as in G90 G43 Z50. H1";
+            run.report.note_once("length-alone", message, span);
             return;
         }
         let message = "where the offset moves the axis (Fanuc: parameter 5006 bit TOS = 0), a tool \

@@ -71,8 +71,10 @@ fn up_to(pieces: &[Piece], share: f64, deep: usize, level: f64) -> Vec<Piece> {
         let from = if index == 0 { share } else { 0.0 };
         let end = piece.crossing(deep, level);
         let to = end.unwrap_or(1.0);
-        if to > from {
-            out.push(piece.part(from, to));
+        let part = piece.part(from, to);
+        let goes = |axis: usize| (part.end[axis] - part.start[axis]).abs() > TOLERANCE_MM;
+        if to > from && (goes(X) || goes(Z)) {
+            out.push(part);
         }
         if end.is_some() {
             break;

@@ -1,6 +1,6 @@
 //! Pieces of the contour of a turning cycle.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::contour::contour_value;
 use super::{X, Z};
@@ -64,10 +64,14 @@ impl Piece {
         Self {
             start: self.at(from),
             end: self.at(to),
-            arc: self.arc.map(|arc| Arc {
-                start_angle_rad: arc.start_angle_rad + arc.sweep_rad * from,
-                sweep_rad: arc.sweep_rad * (to - from),
-                ..arc
+            arc: self.arc.map(|arc| {
+                let angle = arc.start_angle_rad + arc.sweep_rad * from;
+                Arc {
+                    // Between -π and π, as that of a block of its own.
+                    start_angle_rad: angle - TAU * (angle / TAU).round(),
+                    sweep_rad: arc.sweep_rad * (to - from),
+                    ..arc
+                }
             }),
             kind: self.kind,
         }

@@ -93,6 +93,11 @@ pub(crate) struct LanguageTable {
     /// How far G73 and G83 stay off the last depth, in mm; default 1. A
     /// parameter of the control.
     pub(crate) peck_clearance_mm: Option<Positive>,
+    /// Whether canned cycles repeat by L alone; default false: by K too.
+    pub(crate) cycles_repeat_by_l: Option<bool>,
+    /// Whether G73 and G83 take I, J and K, a first peck that becomes smaller down to a least
+    /// one, and K next to Q, a depth after which G73 returns to R; default false.
+    pub(crate) pecks_by_ijk: Option<bool>,
     /// Whether G83 and G87 of a lathe come out to R after each peck; default: a parameter
     /// of the control says so.
     pub(crate) pecks_return_to_r: Option<bool>,

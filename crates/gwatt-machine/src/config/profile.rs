@@ -96,6 +96,8 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         mill_cycles: table.mill_cycles.unwrap_or(false),
         pecks_return_to_r: table.pecks_return_to_r.unwrap_or(false),
         peck_clearance_mm: table.peck_clearance_mm.as_ref().map_or(1.0, |it| it.value),
+        cycles_repeat_by_l: table.cycles_repeat_by_l.unwrap_or(false),
+        pecks_by_ijk: table.pecks_by_ijk.unwrap_or(false),
         escape_mm: None,
         groove_return_mm: None,
         type_2: table.type_2,
