@@ -88,7 +88,7 @@ fn an_axis_keeps_its_own_errors() {
         [
             "every machine within these errors: X mass ±25 %, friction ±0 %, \
              Y mass ±10 %, friction ±30 %; weights as the machine file has them",
-            "taken as exact, with the margin alone for what differs: \
+            "taken as exact; only the margin covers errors in: \
              friction (X), how servos follow (XY)",
             "counted as none, as the machine file gives none: \
              friction (Y), losses of the drive (Y)",
@@ -104,7 +104,7 @@ fn without_errors_it_is_said_what_counts_as_exact() {
             "servo_factor_motor = 1.3\nservo_factor_regen = 1.2"
         )),
         [
-            "taken as exact, with the margin alone for what differs: \
+            "taken as exact; only the margin covers errors in: \
              mass (XY), friction (X), how servos follow (Y)",
             "counted as none, as the machine file gives none: \
              friction (Y), losses of the drive (Y)",
@@ -128,7 +128,7 @@ fn a_servo_that_is_described_sets_its_factors() {
         [
             "servos as described (X): the power of acceleration exceeds that of the \
              command by a factor of at most 1.271",
-            "taken as exact, with the margin alone for what differs: \
+            "taken as exact; only the margin covers errors in: \
              mass (XY), friction (X), how servos follow (Y)",
             "counted as none, as the machine file gives none: \
              friction (Y), losses of the drive (Y)",

@@ -91,7 +91,11 @@ fn section(out: &mut String, control: &Controller) {
     writeln!(out, "| blocks with `/` are skipped | {skips} |").unwrap();
     writeln!(out, "| gwatt writes | {written} |").unwrap();
     if let Some(stops) = stops(control) {
-        writeln!(out, "| a feed that stands for a rapid rests by | {stops} |").unwrap();
+        writeln!(
+            out,
+            "| a feed written for a rapid is brought to rest by | {stops} |"
+        )
+        .unwrap();
     }
     if let Some((words, _)) = language.dwell_block(2.0) {
         writeln!(out, "| with `--allow pause` | `{words}` for two seconds |").unwrap();

@@ -41,7 +41,7 @@ pub struct CheckArgs {
     #[arg(long, value_name = "FILE", help_heading = "Known findings")]
     pub baseline: Option<PathBuf>,
     /// Findings are known too whose own line has a comment such as (gwatt: known peak-power
-    /// 6000 W of 3600 W), until they grow
+    /// 6002 W of 3600 W), until they grow
     #[arg(
         long,
         conflicts_with = "write_baseline",

@@ -17,7 +17,7 @@ which filter the command passes, [axes.X.correction]; gwatt identify --into and
 gwatt tune --into write them.";
 
 /// Arguments of `contour`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct ContourArgs {
     /// The program, or - for standard input

@@ -89,15 +89,15 @@ pub enum Command {
     Limit(LimitArgs),
     /// Limit the programs that appear in a folder into another one
     Watch(WatchArgs),
-    /// Say whether programs fit
+    /// Check whether programs fit
     Check(CheckArgs),
-    /// Say what each move of a program draws
+    /// Show what each move of a program draws
     Report(ReportArgs),
-    /// Say which controllers programs are for
+    /// Show which controllers programs are for
     Dialect(DialectArgs),
     /// Compare two machines over programs
     Diff(DiffArgs),
-    /// Say how large the converter must be
+    /// Show how large the converter must be
     Size(SizeArgs),
     /// Print every move of a program as JSON, one a line
     Moves(MovesArgs),
@@ -117,7 +117,7 @@ pub enum Command {
     Identify(IdentifyArgs),
     /// Make filters that let several axes answer alike
     Tune(TuneArgs),
-    /// Say how far the load is from the programmed path
+    /// Show how far the load is from the programmed path
     Contour(ContourArgs),
     /// Fit the power model of an axis to a log of the drive's power
     PowerFit(PowerFitArgs),

@@ -26,7 +26,7 @@ the result is the end of a period; jerk is its mean over the period.
 Exit status 1: the drives take more than there is.";
 
 /// Arguments of `plan`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct PlanArgs {
     /// The schedule, or - for standard input

@@ -73,10 +73,10 @@ pub struct ProgramArgs {
     /// Folder where subprograms are looked for, after the program's own
     #[arg(long, value_name = "DIR", help_heading = "Program")]
     pub sub_path: Vec<PathBuf>,
-    /// The program runs once: limits over time need not bear it again at once
+    /// The program runs once; limits over time need not allow an immediate repeat
     #[arg(long, help_heading = "Program")]
     pub once: bool,
-    /// Moves that loops and calls may repeat
+    /// Most moves that loops and calls may make
     #[arg(
         long,
         value_name = "N",

@@ -39,8 +39,8 @@ pub struct SizeArgs {
     /// 1%, or 1%,5%
     #[arg(long = "loss", value_name = "PERCENT", value_delimiter = ',')]
     pub losses: Vec<LossArg>,
-    /// Try nothing smaller where a program takes so much longer: with little power left
-    /// under look-ahead the search takes long
+    /// Stop where a program takes this much longer: with little power left the search is slow
+    /// under look-ahead
     #[arg(long, value_name = "PERCENT", default_value = "100%")]
     pub until: LossArg,
     /// Steps between the smallest converter that is enough and the smallest that slows
@@ -50,7 +50,7 @@ pub struct SizeArgs {
     /// Which converter, where the machine has several
     #[arg(long, value_name = "NAME")]
     pub converter: Option<String>,
-    /// The converter takes so much of its peak power back, such as 0.5
+    /// Share of its peak power that the converter takes back, such as 0.5
     /// [default: `regen_power_w` of the machine file]
     #[arg(long, value_name = "RATIO", value_parser = ratio)]
     pub regen_ratio: Option<f64>,

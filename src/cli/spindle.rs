@@ -19,7 +19,7 @@ The run starts at rest with the first row and ends at the last target. Every
 row of the result is the end of a period; jerk is its mean over the period.";
 
 /// Arguments of `spindle`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct SpindleArgs {
     /// The schedule, or - for standard input

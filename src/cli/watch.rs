@@ -39,7 +39,7 @@ pub struct WatchArgs {
     /// How long a program must stay as it is before it is read, in s: it may still be written
     #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = seconds)]
     pub settle: f64,
-    /// Of programs that fit say nothing
+    /// Print nothing for programs that fit
     #[arg(short, long)]
     pub quiet: bool,
     #[command(flatten)]

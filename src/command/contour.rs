@@ -16,6 +16,7 @@ use super::clash::refuse_clashes;
 use super::dialect;
 use super::input::{Program, is_dash};
 use super::output::{Spool, Target, print};
+use super::settings;
 use super::setup::{Setup, machine_file};
 use super::terminal::Terminal;
 use crate::cli::ContourArgs;
@@ -27,6 +28,10 @@ const STEP_MAX_MS: f64 = 20.0;
 /// Says how far the load is from the programmed path.
 pub fn run(args: &ContourArgs, terminal: Terminal) -> Result<Verdict> {
     let mut program = Program::new(&args.program);
+    let mut args = args.clone();
+    let given = settings::Settings::of(slice::from_ref(&program), terminal)?;
+    given.fill(&mut args.machine, &mut args.reading)?;
+    let args = &args;
     let machine = machine_file(args.machine.machine.as_deref());
     let inputs: Vec<&Path> = program.path().into_iter().chain(machine).collect();
     let files = [&args.csv, &args.json, &args.svg, &args.circles];

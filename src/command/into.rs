@@ -12,6 +12,7 @@ use gwatt::machine::AxisId;
 use gwatt::report::Verdict;
 
 use super::output::{Spool, Target, back_up};
+use super::setup::machine_file;
 use super::terminal::Terminal;
 
 /// Largest machine file that is read.
@@ -69,6 +70,9 @@ impl Merged {
     /// Prepares the file that `change` makes of the present one.
     pub fn made(path: &Path, change: impl FnOnce(&str, &str) -> Outcome<String>) -> Result<Self> {
         let name = path.display().to_string();
+        if !path.exists() && machine_file(Some(&name)).is_none() {
+            bail!("{name} is built in: `gwatt machine show {name} > mine.toml` makes a file of it");
+        }
         let metadata = fs::metadata(path).with_context(|| format!("cannot read {name}"))?;
         ensure!(metadata.is_file(), "{name} is not a file");
         if metadata.len() > BYTES_MAX {
@@ -90,7 +94,7 @@ impl Merged {
     pub fn deliver(self, path: &Path, terminal: Terminal) -> Result<()> {
         let Some(spool) = self.spool else {
             terminal.note(format_args!(
-                "{} is as it was: what it says covers what was found",
+                "{} is unchanged: its values already cover what was found",
                 path.display()
             ));
             return Ok(());
@@ -100,7 +104,7 @@ impl Merged {
         let backup = back_up(&real)?;
         spool.deliver()?;
         terminal.note(format_args!(
-            "{} has the new figures; as it was it is {}",
+            "{} has the new figures; the old version is kept as {}",
             path.display(),
             backup.display()
         ));

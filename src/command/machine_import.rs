@@ -1,13 +1,15 @@
 //! `gwatt machine import`.
 
+use std::cell::RefCell;
 use std::fs;
-use std::io::{self, Read, Write};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use gwatt::diagnostic::excerpt;
 use gwatt::import::{File, Format, MAX_BYTES, Near, Wanted, import};
 
+use super::clash::refuse_clashes;
 use super::input::is_dash;
 use super::output::{Target, print};
 use super::terminal::{Shown, Terminal};
@@ -17,13 +19,17 @@ use crate::cli::ImportArgs;
 pub fn run(args: &ImportArgs, terminal: Terminal) -> Result<()> {
     let dashes = args.files.iter().filter(|path| is_dash(path)).count();
     ensure!(dashes <= 1, "standard input can be read only once");
+    let inputs: Vec<&Path> = args.files.iter().map(PathBuf::as_path).collect();
+    let outputs: Vec<&Path> = args.output.as_deref().into_iter().collect();
+    refuse_clashes(&inputs, &outputs)?;
     let target = args.output.as_deref().map(Target::new).transpose()?;
     let files: Result<Vec<File>> = args.files.iter().map(|path| read(path)).collect();
     let wanted = Wanted {
         format: args.format.as_deref().and_then(Format::of_name),
         controller: args.controller.as_deref(),
     };
-    let imported = match import(&files?, wanted, &OnDisk) {
+    let near = OnDisk::default();
+    let imported = match import(&files?, wanted, &near) {
         Ok(imported) => imported,
         Err(findings) => {
             terminal.diagnostics(&name_of(&args.files), &findings);
@@ -33,12 +39,11 @@ pub fn run(args: &ImportArgs, terminal: Terminal) -> Result<()> {
     terminal.diagnostics(&name_of(&args.files), &imported.warnings);
     match (target, &args.output) {
         (Some(target), Some(path)) if !is_dash(path) => {
-            let mut spool = target.spool()?;
+            let read = near.read.borrow();
+            let read: Vec<&Path> = read.iter().map(PathBuf::as_path).collect();
+            refuse_clashes(&read, &[path])?;
             let shown = path.display();
-            spool
-                .write_all(imported.toml.as_bytes())
-                .with_context(|| format!("cannot write {shown}"))?;
-            spool.deliver()?;
+            target.replace(imported.toml.as_bytes(), path, terminal)?;
             terminal.note(format_args!(
                 "{shown}: read as {}; fill in what it asks for, then `gwatt machine check {shown}`",
                 imported.format.name()
@@ -83,7 +88,20 @@ fn read(path: &Path) -> Result<File> {
 }
 
 /// Files in the folder of the one that names them.
-struct OnDisk;
+#[derive(Default)]
+struct OnDisk {
+    /// Those that were read.
+    read: RefCell<Vec<PathBuf>>,
+}
+
+impl OnDisk {
+    /// A file that is there and can be read.
+    fn plain(&self, path: &Path) -> Option<File> {
+        let file = path.is_file().then(|| read(path).ok()).flatten()?;
+        self.read.borrow_mut().push(path.to_owned());
+        Some(file)
+    }
+}
 
 impl Near for OnDisk {
     fn files(&self, from: &str, pattern: &str) -> Vec<File> {
@@ -91,7 +109,7 @@ impl Near for OnDisk {
         let path = folder.join(pattern);
         let name = path.file_name().and_then(|name| name.to_str());
         let Some(name) = name.filter(|name| name.contains(['*', '?'])) else {
-            return plain(&path).into_iter().collect();
+            return self.plain(&path).into_iter().collect();
         };
         let parent = path.parent().unwrap_or(Path::new(""));
         let here = if parent.as_os_str().is_empty() {
@@ -110,13 +128,8 @@ impl Near for OnDisk {
             .map(|entry| parent.join(entry.file_name()))
             .collect();
         paths.sort();
-        paths.iter().filter_map(|path| plain(path)).collect()
+        paths.iter().filter_map(|path| self.plain(path)).collect()
     }
-}
-
-/// A file that is there and can be read.
-fn plain(path: &Path) -> Option<File> {
-    path.is_file().then(|| read(path).ok()).flatten()
 }
 
 /// Whether a name fits a pattern of `*` and `?`.

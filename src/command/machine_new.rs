@@ -1,6 +1,6 @@
 //! `gwatt machine new`.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal};
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use gwatt::draft::{Draft, DraftAxis, DraftLoad, DraftSpindle, MachineKind};
@@ -32,12 +32,8 @@ pub fn run(args: &NewArgs, terminal: Terminal) -> Result<()> {
     }
     match (target, &args.output) {
         (Some(target), Some(path)) if !is_dash(path) => {
-            let mut spool = target.spool()?;
             let shown = path.display();
-            spool
-                .write_all(text.as_bytes())
-                .with_context(|| format!("cannot write {shown}"))?;
-            spool.deliver()?;
+            target.replace(text.as_bytes(), path, terminal)?;
             print(|out| write!(out, "{shown}: {}\n{sums}", draft.name))
         }
         _ => print(|out| out.write_all(text.as_bytes())),

@@ -9,6 +9,7 @@ use gwatt::pipeline::Restart;
 
 use super::input::is_dash;
 use super::progress::around;
+use super::terminal::Terminal;
 use super::whole_file::WholeFile;
 
 /// Where a result is to go.
@@ -37,6 +38,11 @@ impl Target {
         let metadata = match fs::metadata(path) {
             Ok(metadata) => metadata,
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                let names_folder = path.as_os_str().as_encoded_bytes().ends_with(b"/");
+                anyhow::ensure!(
+                    !names_folder,
+                    "cannot write {shown}: there is no such folder"
+                );
                 return Ok(Self::File {
                     path: path.to_owned(),
                     permissions: None,
@@ -46,7 +52,7 @@ impl Target {
         };
         anyhow::ensure!(
             !metadata.is_dir(),
-            "cannot write {shown}: it is a directory"
+            "cannot write {shown}: it is a folder; name a file in it"
         );
         if !metadata.is_file() {
             return Ok(Self::Special(path.to_owned()));
@@ -61,6 +67,33 @@ impl Target {
             path,
             permissions: Some(permissions),
         })
+    }
+
+    /// Writes a file that people fill in: one that is there keeps another name, unless it is the
+    /// same.
+    pub fn replace(self, bytes: &[u8], path: &Path, terminal: Terminal) -> anyhow::Result<()> {
+        let old = match &self {
+            Self::File {
+                path,
+                permissions: Some(_),
+            } => fs::read(path)
+                .map_or(true, |old| old != bytes)
+                .then(|| path.clone()),
+            _ => None,
+        };
+        let mut spool = self.spool()?;
+        let shown = path.display();
+        spool
+            .write_all(bytes)
+            .with_context(|| format!("cannot write {shown}"))?;
+        if let Some(old) = old {
+            let backup = back_up(&old)?;
+            terminal.note(format_args!(
+                "what {shown} was is kept as {}",
+                backup.display()
+            ));
+        }
+        spool.deliver()
     }
 
     /// Opens a temporary file that can become the result.
@@ -131,7 +164,9 @@ impl Spool {
                     .and_then(|out| copy(&file, out));
                 copied.with_context(|| format!("cannot write {}", path.display()))
             }
-            (_, body) => around(|| copy(body.file(), io::stdout().lock())).context(STDOUT),
+            (_, body) => {
+                unless_closed(around(|| copy(body.file(), io::stdout().lock()))).context(STDOUT)
+            }
         }
     }
 }
@@ -157,7 +192,19 @@ fn copy(mut from: &File, mut to: impl Write) -> io::Result<()> {
 /// Lets `write` write to standard output, and makes sure that it arrives.
 pub fn print(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> anyhow::Result<()> {
     let mut out = io::BufWriter::new(io::stdout().lock());
-    around(|| write(&mut out).and_then(|()| out.flush())).context(STDOUT)
+    let written = around(|| write(&mut out).and_then(|()| out.flush()));
+    // What is left in the buffer has no reader either.
+    let _ = out.into_parts();
+    unless_closed(written).context(STDOUT)
+}
+
+/// A reader of standard output that went away, as `head` does, is no error: the run goes on to
+/// its verdict.
+fn unless_closed(written: io::Result<()>) -> io::Result<()> {
+    match written {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        other => other,
+    }
 }
 
 /// Keeps the file at `path` under a name that is free, and says which. The file

@@ -2,6 +2,7 @@
 
 use std::io::{self, BufWriter};
 use std::path::Path;
+use std::slice;
 
 use anyhow::Result;
 use gwatt::machine::Machine;
@@ -12,6 +13,7 @@ use super::clash::refuse_clashes;
 use super::input::Program;
 use super::output::Target;
 use super::schedule_file::read_schedule;
+use super::settings::Settings;
 use super::setup::{load_machine, machine_file, machine_name};
 use super::terminal::Terminal;
 use crate::cli::PlanArgs;
@@ -22,11 +24,13 @@ const FINE_MS: f64 = 2.0;
 /// Runs drives through a schedule.
 pub fn run(args: &PlanArgs, terminal: Terminal) -> Result<Verdict> {
     let input = Program::new(&args.schedule);
-    let machine = machine_file(args.machine.machine.as_deref());
+    let mut given = args.machine.clone();
+    Settings::of(slice::from_ref(&input), terminal)?.fill_machine(&mut given);
+    let machine = machine_file(given.machine.as_deref());
     let inputs: Vec<&Path> = input.path().into_iter().chain(machine).collect();
     let csv = args.output.as_deref().unwrap_or(Path::new("-"));
     refuse_clashes(&inputs, &[csv])?;
-    let name = machine_name(&args.machine, terminal);
+    let name = machine_name(&given, terminal);
     let machine = load_machine(name, terminal)?;
     let schedule = match DriveSchedule::parse(&read_schedule(&input, terminal)?, &machine) {
         Ok(schedule) => schedule,

@@ -27,10 +27,18 @@ pub struct Settings {
     sub_path: Vec<PathBuf>,
     set: Vec<String>,
     start: Option<String>,
-    block_delete: Option<String>,
+    block_delete: Option<Deleted>,
     once: bool,
     /// What `limit` may change.
     allow: Vec<Allow>,
+}
+
+/// Blocks that are deleted: all with `/`, or those of some levels.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum Deleted {
+    All(bool),
+    Levels(String),
 }
 
 impl Settings {
@@ -52,12 +60,18 @@ impl Settings {
         let Some((first, file)) = found.next() else {
             return Ok(Self::default());
         };
-        if let Some((other, _)) = found.find(|(_, other)| *other != file) {
+        if let Some((folder, other)) = found.find(|(_, other)| *other != file) {
+            let settings = |file: &Option<PathBuf>| match file {
+                Some(file) => format!("settings in {}", file.display()),
+                None => format!("no {NAME}"),
+            };
             bail!(
-                "the programs in {} and {} have settings ({NAME}) of their own: run them one \
-                 folder at a time",
+                "programs have different settings: {} has {}, {} has {}: run them one folder at \
+                 a time",
                 first.display(),
-                other.display()
+                settings(&file),
+                folder.display(),
+                settings(&other)
             );
         }
         let Some(file) = file else {
@@ -87,9 +101,14 @@ impl Settings {
         }
     }
 
+    /// Fills in the machine where none is given.
+    pub fn fill_machine(&self, machine: &mut MachineArgs) {
+        fill(&mut machine.machine, self.machine.as_ref());
+    }
+
     /// Fills in what is not given.
     pub fn fill(&self, machine: &mut MachineArgs, reading: &mut ProgramArgs) -> Result<()> {
-        fill(&mut machine.machine, self.machine.as_ref());
+        self.fill_machine(machine);
         fill(&mut reading.dialect, self.dialect.as_ref());
         fill(&mut reading.tool_table, self.tool_table.as_ref());
         fill(&mut reading.parameters, self.parameters.as_ref());
@@ -102,7 +121,11 @@ impl Settings {
         if let Some(start) = self.start.as_ref().filter(|_| reading.start.is_none()) {
             reading.start = Some(parsed("start", start)?);
         }
-        let levels = self.block_delete.as_ref();
+        let levels = match &self.block_delete {
+            Some(Deleted::Levels(levels)) => Some(levels.as_str()),
+            Some(Deleted::All(true)) => Some("all"),
+            Some(Deleted::All(false)) | None => None,
+        };
         if let Some(levels) = levels.filter(|_| reading.block_delete.is_none()) {
             reading.block_delete = Some(parsed::<DeleteLevels>("block_delete", levels)?);
         }

@@ -2,6 +2,7 @@
 
 use std::io::{self, BufWriter};
 use std::path::Path;
+use std::slice;
 
 use anyhow::{Context, Result, bail};
 use gwatt::machine::Spindle;
@@ -14,6 +15,7 @@ use super::clash::refuse_clashes;
 use super::input::Program;
 use super::output::Target;
 use super::schedule_file::read_schedule;
+use super::settings::Settings;
 use super::setup::{load_machine, machine_file, machine_name};
 use super::terminal::Terminal;
 use crate::cli::SpindleArgs;
@@ -21,7 +23,9 @@ use crate::cli::SpindleArgs;
 /// Runs a spindle through a schedule.
 pub fn run(args: &SpindleArgs, terminal: Terminal) -> Result<Verdict> {
     let input = Program::new(&args.schedule);
-    let machine = machine_file(args.machine.machine.as_deref());
+    let mut given = args.machine.clone();
+    Settings::of(slice::from_ref(&input), terminal)?.fill_machine(&mut given);
+    let machine = machine_file(given.machine.as_deref());
     let inputs: Vec<&Path> = input.path().into_iter().chain(machine).collect();
     let stdout = Path::new("-");
     let csv = args.output.as_deref().unwrap_or(stdout);
@@ -30,7 +34,7 @@ pub fn run(args: &SpindleArgs, terminal: Terminal) -> Result<Verdict> {
         .flatten()
         .collect();
     refuse_clashes(&inputs, &outputs)?;
-    let name = machine_name(&args.machine, terminal);
+    let name = machine_name(&given, terminal);
     let machine = load_machine(name, terminal)?;
     let Some(spindle) = &machine.spindle else {
         bail!(

@@ -87,7 +87,7 @@ fn exact(machine: &Machine) -> Option<String> {
         ),
     ])?;
     Some(format!(
-        "taken as exact, with the margin alone for what differs: {listed}"
+        "taken as exact; only the margin covers errors in: {listed}"
     ))
 }
 

@@ -86,14 +86,14 @@ fn over_time_condition(machine: &Machine, summary: &Summary) -> String {
          of feed and rapid overrides have bounds of their own, small enough to keep it in each"
             .to_owned()
     } else {
-        "limits over time hold at every lower override too, by a bound over all of them".to_owned()
+        "limits over time hold at every lower override too (bounded for all at once)".to_owned()
     };
     let rules = machine.controller.planner.look_ahead;
     if rules.is_some_and(|rules| !matches!(rules.corner, CornerRule::LinuxCnc { .. })) {
         said.push_str("; what drives make of steps of speed counts as at the larger overrides");
     }
     if machine.spindle.is_some() {
-        said.push_str("; the spindle's runs overlap the moves that they overlap at the largest");
+        said.push_str("; the spindle's runs are placed as at the largest override");
     }
     said
 }
@@ -227,11 +227,13 @@ fn over_time_conditions(machine: &Machine, options: &Options, summary: &Summary)
         return conditions;
     }
     let runs = if options.once {
-        "of one run"
+        "one run"
     } else {
-        "of a program that runs again at once, for ever"
+        "a program that repeats without a pause"
     };
-    conditions.push(format!("limits over time are less the margin, {runs}"));
+    conditions.push(format!(
+        "limits over time are reduced by the margin and hold for {runs}"
+    ));
     if machine.limits.override_at.is_none() {
         conditions.push(over_time_condition(machine, summary));
     }
@@ -285,9 +287,9 @@ pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary
         || !machine.tools.is_empty();
     conditions.push(
         if cuts {
-            "cutting counts as the machine file has it; emergency stop and feed hold are outside"
+            "cutting counts as the machine file has it; emergency stop and feed hold are not covered"
         } else {
-            "cutting forces are not counted; emergency stop and feed hold are outside"
+            "cutting forces are not counted; emergency stop and feed hold are not covered"
         }
         .to_owned(),
     );

@@ -17,7 +17,7 @@ pub struct Options {
     /// The certificate asked for; `None`: planned where the controller's
     /// planner is modelled, else robust.
     pub certificate: Option<Certificate>,
-    /// The program runs once: limits over time need not bear it again at once.
+    /// The program runs once; limits over time need not allow an immediate repeat.
     pub once: bool,
     /// Of `limit` alone: feeds that it writes in place of rapids get a comment that says
     /// so, and feeds with this comment are taken for what it says: their F may be lowered

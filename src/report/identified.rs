@@ -9,6 +9,7 @@ use super::effects::{effects_json, effects_text, saturation_json};
 use super::estimate::{insert, number, shown};
 use crate::identify::flexible::{Flexible, Root};
 use crate::identify::judgement::{self, Judgement};
+use crate::identify::merge::rounded_up;
 use crate::identify::power_fit::PowerModel;
 use crate::identify::rigid::Rigid;
 use crate::identify::{Factor, Figure};
@@ -429,15 +430,15 @@ pub fn power_model_text(heading: &Heading, model: &PowerModel) -> String {
     let _ = writeln!(text, "  efficiency        {efficiency}");
     // A model without a constant explains the square of the power, not its
     // deviation from a mean that it cannot set.
-    let about = if model.standby_w.value == 0.0 {
-        "zero, as there is no standby"
+    let about_zero = if model.standby_w.value == 0.0 {
+        format!("{:.4} about zero, as there is no standby; ", model.r2)
     } else {
-        "the mean"
+        String::new()
     };
     let _ = writeln!(
         text,
-        "  R²                {:.4} about {about}; {:.4} about the mean",
-        model.r2, model.r2_centered
+        "  R²                {about_zero}{:.4} about the mean",
+        model.r2_centered
     );
     let _ = writeln!(text, "  left over         {:.3} W rms", model.rms_w);
     let _ = writeln!(
@@ -452,7 +453,7 @@ pub fn power_model_text(heading: &Heading, model: &PowerModel) -> String {
         peaks.factor,
         peaks.peaks,
         peaks.seen,
-        margin(model)
+        rounded_up(margin(model))
     );
     let _ = writeln!(text, "verdict: {}", judgement::power(model));
     text

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::figure::Figure;
 use super::quantity::power;
+use crate::identify::merge::rounded_up;
 use crate::identify::overlay::{Agreement, AxisFactor, BlockPeaks, Overlay};
 
 /// Blocks that are listed for people.
@@ -101,7 +102,7 @@ pub fn verified_text(names: &VerifiedNames, overlay: &Overlay) -> String {
     let beyond = if overlay.axes.is_empty() {
         String::new()
     } else {
-        let beyond = overlay.margin_beyond_axes();
+        let beyond = rounded_up(overlay.margin_beyond_axes());
         format!(", or {beyond:.3} next to the factors of axes")
     };
     for axis in &overlay.axes {
@@ -119,8 +120,9 @@ pub fn verified_text(names: &VerifiedNames, overlay: &Overlay) -> String {
     line(
         "margin",
         format!(
-            "{needed:.3} covers them{beyond}; 95 % of others {:.3}, with 95 % confidence; the machine file has {only}{}",
-            overlay.margin_of_others(),
+            "{:.3} covers them{beyond}; 95 % of others {:.3}, with 95 % confidence; the machine file has {only}{}",
+            rounded_up(needed),
+            rounded_up(overlay.margin_of_others()),
             names.margin
         ),
     );

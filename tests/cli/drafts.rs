@@ -190,7 +190,7 @@ fn every_message() {
     );
     with(
         &["--axis", X, "-o", "."],
-        "cannot write .: it is a directory",
+        "cannot write .: it is a folder; name a file in it",
     );
 }
 

@@ -130,3 +130,23 @@ fn tool_tables_and_parameter_files() {
     shop.run(&["moves", "offset.ngc", "--tool-table", "none.tbl"])
         .refused("cannot read none.tbl");
 }
+
+/// A file that is read is no place for the result, and one that people have filled in is kept.
+#[test]
+fn imports_overwrite_nothing_that_is_needed() {
+    let shop = Shop::new();
+    shop.put(
+        "router.txt",
+        include_str!("../../examples/router-settings.txt"),
+    );
+    shop.run(&["machine", "import", "router.txt", "-o", "router.txt"])
+        .refused("router.txt is read by this run: write to another file");
+    shop.put("filled.toml", "mass_kg = 300\n");
+    let ran = shop.run(&["machine", "import", "router.txt", "-o", "filled.toml"]);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let kept = "what filled.toml was is kept as ";
+    assert!(ran.stderr.contains(kept), "{}", ran.stderr);
+    assert_eq!(shop.get("filled.toml.bak"), "mass_kg = 300\n");
+    let again = shop.run(&["machine", "import", "router.txt", "-o", "filled.toml"]);
+    assert!(!again.stderr.contains(kept), "{}", again.stderr);
+}

@@ -328,7 +328,19 @@ fn settings_lie_next_to_the_programs() {
     let ran = Ran::from(command.env("GWATT_MACHINE", "vmc").output().unwrap());
     assert_eq!(ran.stdout, other.stdout);
     shop.run(&["check", "jobs/a/two.NGC", "gentle.ngc"])
-        .refused("have settings (gwatt.toml) of their own");
+        .refused(". has no gwatt.toml, jobs/a has settings in jobs/gwatt.toml");
+    // They are those of schedules and contours too.
+    shop.put("jobs/spindle.csv", "t_s,rpm\n0,1000\n");
+    for command in ["spindle", "plan"] {
+        let ran = shop.run(&[command, "jobs/spindle.csv"]);
+        assert!(ran.stderr.contains(note), "{command}: {}", ran.stderr);
+    }
+    let ran = shop.run(&["contour", "jobs/a/two.NGC"]);
+    assert!(ran.stderr.contains(note), "{}", ran.stderr);
+    let text = "machine = \"mill.toml\"\nblock_delete = true\n";
+    shop.put("jobs/gwatt.toml", text);
+    let ran = shop.run(&["check", "jobs/a/two.NGC"]);
+    assert_eq!(ran.code, 1, "{}", ran.stderr);
     for (text, message) in [
         ("machin = \"vmc\"\n", "unknown field `machin`"),
         ("allow = [\"all\"]\n", "unknown variant `all`"),

@@ -407,7 +407,7 @@ fn all_files_appear_or_none() {
     let shop = shop("iso");
     fs::create_dir_all(shop.path().join("fit/O0100.nc")).unwrap();
     let ran = limit(&shop, &["one.nc"]);
-    ran.refused("O0100.nc: it is a directory");
+    ran.refused("O0100.nc: it is a folder");
     assert!(!shop.path().join("fit/one.nc").exists());
     let into = |folder| {
         let usual = ["limit", "one.nc", "-m", "rig.toml", "--with-subprograms"];

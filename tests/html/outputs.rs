@@ -62,7 +62,7 @@ fn pages_that_cannot_be_are_refused() {
     );
     refused(
         &with("limit", &["-o", "fit.ngc", "--svg", "folder"]),
-        "it is a directory",
+        "it is a folder; name a file in it",
     );
     refused(
         &with("report", &["--html", "steep.ngc"]),

@@ -94,7 +94,7 @@ pub fn margin_into_machine(
         let item = axis_item(&mut document, *axis).ok_or_else(|| no_axis(path, *axis))?;
         let table = item.as_table_like_mut();
         let table = table.ok_or_else(|| no_axis(path, *axis))?;
-        let factor = libm::ceil(factor * 1000.0) / 1000.0;
+        let factor = rounded_up(*factor);
         // That which follows from loops counts as well.
         let present = machine.as_ref().and_then(|(machine, _)| {
             let own = machine.axes.get(*axis as usize)?.as_ref()?;
@@ -340,6 +340,13 @@ pub(super) fn set(table: &mut dyn TableLike, key: &str, value: f64) {
 /// How a comment begins that is about an earlier value.
 const WAS: &str = "was ";
 
+/// A margin or factor as it is shown and written: up to three digits after the point, and never
+/// less than what was found.
+#[must_use]
+pub fn rounded_up(value: f64) -> f64 {
+    libm::ceil(value * 1000.0) / 1000.0
+}
+
 /// Six significant digits.
 #[must_use]
 pub fn six_digits(value: f64) -> f64 {
@@ -349,7 +356,7 @@ pub fn six_digits(value: f64) -> f64 {
 /// Sets the margin, unless the file has a larger one.
 fn raise_margin(document: &mut DocumentMut, margin: f64) {
     const DEFAULT: f64 = 0.1;
-    let margin = libm::ceil(margin * 1000.0) / 1000.0;
+    let margin = rounded_up(margin);
     let present = document
         .get("limits")
         .and_then(|limits| limits.get("margin"))

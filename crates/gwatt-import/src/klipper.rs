@@ -211,7 +211,7 @@ fn corners(config: &Config<'_, '_>, found: &mut Found, log: &mut Log, accel: Opt
                 ratio.source,
             );
         } else if let Some(item) = last(config.items, "printer", "minimum_cruise_ratio") {
-            let message = format!("a cruise ratio of {} is none", ratio.value);
+            let message = format!("{} is not valid for a cruise ratio", ratio.value);
             log.error(&item.place, message, "it is a share from 0 to below 1");
         }
     }

@@ -185,7 +185,7 @@ impl Log {
         if number > 0.0 {
             return Some(number);
         }
-        let message = format!("{what} of {number} is none");
+        let message = format!("{number} is not valid for {what}");
         self.error(
             place,
             message,

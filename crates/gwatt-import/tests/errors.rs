@@ -11,7 +11,7 @@ fn numbers_that_are_none() {
     settings:1, error: `8OO0` is not a number / write the number that the control has, without a unit
       | $110=8OO0
       |      ^^^^
-    settings:2, error: an acceleration of axis X of -5 is none / a value above 0 is needed: look at the control
+    settings:2, error: -5 is not valid for an acceleration of axis X / a value above 0 is needed: look at the control
       | $120=-5
       |      ^^
     settings:3, error: `nan` is not a number / write the number that the control has, without a unit
@@ -30,7 +30,7 @@ fn numbers_that_are_none() {
     settings:1, error: `fast` is not a number / write the number that the control has, without a unit
       | echo:  M203 Xfast
       |              ^^^^
-    settings:2, error: M201 of X of 0 is none / a value above 0 is needed: look at the control
+    settings:2, error: 0 is not valid for M201 of X / a value above 0 is needed: look at the control
       | echo:  M201 X0
       |              ^
     settings:0, warning: M503 does not say whether S_CURVE_ACCELERATION is on, which makes peaks of acceleration 1.875 times as high: counted as on / import Configuration.h instead, or delete the servo factors where it is off
@@ -52,7 +52,7 @@ fn numbers_that_are_none() {
     settings:3, error: `300 mm` is not a number / write the number that the control has, without a unit
       | max_velocity: 300 mm
       |               ^^^^^^
-    settings:4, error: a cruise ratio of 2 is none / it is a share from 0 to below 1
+    settings:4, error: 2 is not valid for a cruise ratio / it is a share from 0 to below 1
       | minimum_cruise_ratio: 2
       |                       ^
     ");

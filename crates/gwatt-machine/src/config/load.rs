@@ -208,6 +208,13 @@ fn not_found(
     }
     let names: Vec<&str> = builtins.iter().map(|builtin| builtin.name).collect();
     let list = format!("built in: {}", names.join(", "));
+    let is_profile = what == "machine" && builtin::controllers().iter().any(|it| it.name == name);
+    if is_profile {
+        let help = format!(
+            "{name} is a controller profile: a machine file takes it by controller = \"{name}\""
+        );
+        return refuse(format!("no machine is named \"{name}\""), Some(help));
+    }
     let help = match hints::did_you_mean(name, names) {
         Some(suggestion) => format!("{suggestion} {list}"),
         None => list,

@@ -239,13 +239,17 @@ pub(crate) fn drives(
         let rubs = axis.coulomb_n + axis.viscous_n_s_m * speed;
         let friction_w = rubs * speed / axis.efficiency;
         let fed_by = converters.iter().find(|it| it.axes.contains(id as usize));
-        if let Some(converter) = fed_by.filter(|it| friction_w > it.peak_power_w) {
+        if let Some(converter) =
+            fed_by.filter(|it| it.peak_power_w > 0.0 && friction_w > it.peak_power_w)
+        {
             let message = format!(
                 "friction alone takes {} W of axis {letter} at its rapid speed, more than the \
                  converter's {} W",
                 round(friction_w),
                 round(converter.peak_power_w)
             );
+            let of_motor = table.friction_nm.is_some() || table.viscous_nm_s_rad.is_some();
+            let force = if of_motor { "N·m" } else { force };
             let help = format!("friction in {force} is meant, speed in {length}/min, power in W");
             let span = friction_span(table).unwrap_or(0..0);
             findings.warning(RULE, &span, message, Some(help));
