@@ -6,7 +6,7 @@
 //! the pipeline, which reads them again.
 
 use std::collections::BTreeMap;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
 use super::hole::Placed;
@@ -335,20 +335,7 @@ impl<'m> Singles<'m> {
             return Ok(());
         }
         if let Some(arc) = &mv.arc {
-            if of.modal.arc_absolute || arc.sweep_rad.abs() >= std::f64::consts::TAU {
-                return Err("its arcs are full circles, or have absolute centres");
-            }
-            for (axis, center) in arc.plane.into_iter().zip(arc.center) {
-                let letter = b"IJK".get(axis).ok_or("its arcs lie in no plane")?;
-                // From the start as it is written: a unit further is two on a diameter.
-                let unit_mm = of.modal.mm_per_unit;
-                let mut next = mv.start;
-                next[axis] += unit_mm;
-                let [start, next] = [place(&mv.start)[axis], place(&next)[axis]];
-                let moved = (from[axis] - start) / (next - start);
-                let offset = rounded((center - mv.start[axis]) / unit_mm - moved);
-                let _ = write!(words, " {}{}", char::from(*letter), decimal(offset, true));
-            }
+            words.push_str(&center_words(mv, arc, &from, of, place)?);
         }
         // On a lathe all moves of a cycle have the F in force, but for the way out of a bore.
         let lathe = self.language.dialect.lathe.is_some() && !OUT_FASTER.contains(&of.number);
@@ -383,6 +370,32 @@ impl<'m> Singles<'m> {
         let point = self.language.family.facts().dwell_with_point;
         near(value, *unit_s).then(|| format!("G4 {}{}", char::from(*letter), decimal(value, point)))
     }
+}
+
+/// The words of an arc's centre, which count from its start as it is written.
+fn center_words(
+    mv: &Move,
+    arc: &Arc,
+    from: &AxisValues,
+    of: &CycleBlock<'_>,
+    place: &impl Fn(&AxisValues) -> AxisValues,
+) -> Result<String, &'static str> {
+    if of.modal.arc_absolute || arc.sweep_rad.abs() >= TAU {
+        return Err("its arcs are full circles, or have absolute centres");
+    }
+    let unit_mm = of.modal.mm_per_unit;
+    let mut words = String::new();
+    for (axis, center) in arc.plane.into_iter().zip(arc.center) {
+        let letter = b"IJK".get(axis).ok_or("its arcs lie in no plane")?;
+        // A unit further is two on a diameter.
+        let mut next = mv.start;
+        next[axis] += unit_mm;
+        let [start, next] = [place(&mv.start)[axis], place(&next)[axis]];
+        let moved = (from[axis] - start) / (next - start);
+        let offset = rounded((center - mv.start[axis]) / unit_mm - moved);
+        let _ = write!(words, " {}{}", char::from(*letter), decimal(offset, true));
+    }
+    Ok(words)
 }
 
 impl<'a> Lines<'a> {
