@@ -35,7 +35,7 @@ fn expressions_of_numbers() {
     assert!(toml.contains("rapid_mm_min = 12000"), "{toml}");
     assert!(toml.contains("accel_mm_s2 = 3000"), "{toml}");
     assert_snapshot!(refused("M203 X{0 - 5}\nM201 X{var.a*2}\nM566 X1\n"), @r"
-    settings:1, error: M203 of X of -5 is none / a value above 0 is needed: look at the control
+    settings:1, error: -5 is not valid for M203 of X / a value above 0 is needed: look at the control
       | M203 X{0 - 5}
       |       ^^^^^^^
     settings:2, error: `{var.a*2}` is not a number / write the number that the control has, without a unit
