@@ -330,6 +330,18 @@ fn a_series_shows_the_limited_program_too() {
     let (code, _, reported) = shop.run("report a.ngc --series a.csv --allow feed");
     assert_eq!(code, 0, "{reported}");
     assert!(!rows(&shop.get("a.csv"), "after").is_empty());
+    // All that `limit` may be allowed.
+    let cycle =
+        "G21 G90 G64\nG0 X0. Y0. Z50.\nG98 G81 X300. Y200. Z-5. R2. F500.\nG80\nG0 Z50.\nM30\n";
+    let shop = Shop::straight("fanuc", 300.0);
+    shop.put("a.ngc", cycle);
+    for (allow, limits) in [("feed", false), ("feed,expand", true)] {
+        let asked = format!("report a.ngc --series a.csv --step-ms 20 --allow {allow}");
+        let (code, _, reported) = shop.run(&asked);
+        assert_eq!(code, 0, "{reported}");
+        let after = rows(&shop.get("a.csv"), "after");
+        assert_eq!(!after.is_empty(), limits, "{allow}: {reported}");
+    }
 }
 
 #[test]

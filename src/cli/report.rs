@@ -58,9 +58,15 @@ pub struct ReportArgs {
     /// The program after limiting, for the series [default: it is limited now]
     #[arg(long, value_name = "FILE", requires = "series")]
     pub limited: Option<PathBuf>,
-    /// Allow cutting feeds to be lowered, for the series
-    #[arg(long, value_enum, value_name = "WHAT", requires = "series")]
-    pub allow: Option<Allow>,
+    /// What `limit` may change for the series, as its own --allow: feed, or feed,expand
+    #[arg(
+        long,
+        value_enum,
+        value_name = "WHAT",
+        value_delimiter = ',',
+        requires = "series"
+    )]
+    pub allow: Vec<Allow>,
     /// Show only programs that do not fit or are not read, and the totals
     #[arg(short, long)]
     pub quiet: bool,

@@ -27,7 +27,11 @@ pub fn run(args: &ReportArgs, terminal: Terminal) -> Result<Verdict> {
     let listing = Listing::of(&args.programs, terminal)?;
     let mut programs = listing.programs();
     let mut args = args.clone();
-    Settings::of(&programs, terminal)?.fill(&mut args.machine, &mut args.reading)?;
+    let settings = Settings::of(&programs, terminal)?;
+    settings.fill(&mut args.machine, &mut args.reading)?;
+    if args.series.is_some() {
+        settings.allow(&mut args.allow);
+    }
     let args = &args;
     if listing.is_many {
         return report_each(args, &listing, terminal);

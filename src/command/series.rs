@@ -3,14 +3,14 @@
 use std::io::{BufWriter, IntoInnerError};
 
 use anyhow::Result;
-use gwatt::pipeline::{self, Allowed, Failure, Law, LimitOptions, Strategy};
+use gwatt::pipeline::{self, Failure, Law, LimitOptions, Strategy};
 use gwatt::report::SeriesRows;
 
 use super::input::Program;
 use super::output::{Spool, Target};
 use super::setup::Setup;
 use super::terminal::Messages;
-use crate::cli::{Allow, ReportArgs};
+use crate::cli::{ReportArgs, allowed};
 
 /// Writes the series of a program before and after limiting, if one is asked
 /// for; false where a program was refused.
@@ -46,10 +46,7 @@ pub fn write(
         let how = LimitOptions {
             strategy: Strategy::Optimal,
             law: Law::Exact,
-            allowed: Allowed {
-                feed: args.allow == Some(Allow::Feed),
-                ..Allowed::NOTHING
-            },
+            allowed: allowed(&args.allow),
             ..LimitOptions::USUAL
         };
         let mut written = BufWriter::new(Target::Stdout.spool()?);

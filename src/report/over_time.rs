@@ -57,6 +57,7 @@ pub(super) fn figures(rating: &Rating) -> String {
 
 /// From which power on an overload counts, W, and for how long that is permitted, such as
 /// `overload above 1.98 kW: 4.00 s within 10 s`.
+#[cfg(feature = "html")]
 pub(super) fn overload(found: &OverTime) -> Option<(f64, String)> {
     let Measure::Overload {
         above_w, every_s, ..
