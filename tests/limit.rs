@@ -42,6 +42,7 @@ mod single_holes;
 mod stop_words;
 mod stops;
 mod turned;
+mod type_two;
 mod waits;
 mod ways;
 mod whole;
