@@ -23,7 +23,7 @@ use gwatt::interpret::{
 };
 use gwatt::machine::{AXES, LookAhead, Machine, QueueEffect};
 use gwatt::plan::Overrides;
-use gwatt::plan::lookahead::{Element, Joint, PathPlanner, Planned};
+use gwatt::plan::lookahead::{CornerSet, Element, Joint, PathPlanner, Planned};
 use gwatt::syntax::{Block, scan_line};
 use std::collections::HashMap;
 
@@ -68,7 +68,7 @@ pub(crate) fn line(to: [f64; 3], feed_mm_s: f64, accel_mm_s2: f64, joint: Joint)
         start,
         end: start,
         curve: None,
-        square: None,
+        set: CornerSet::None,
         joint,
     }
 }

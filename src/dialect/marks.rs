@@ -225,7 +225,7 @@ const SLICERS: &[&str] = &[
 ];
 
 /// All marks.
-pub(super) const MARKS: [Mark; 67] = [
+pub(super) const MARKS: [Mark; 68] = [
     // TwinCAT NC I
     mark("DynOvr", NCI, 10, |line| line.code().starts_with("DYNOVR")),
     mark("#set param", NCI, 10, |line| {
@@ -380,8 +380,9 @@ pub(super) const MARKS: [Mark; 67] = [
         flavor(line, "KLIPPER")
     }),
     mark("flavor RepRapFirmware", REPRAP, 5, |line| {
-        flavor(line, "REPRAP")
+        flavor(line, "REPRAP") && !is_sprinter(line)
     }),
+    mark("flavor RepRap/Sprinter", &["marlin"], 5, is_sprinter),
     mark("a command of Klipper", &["klipper"], 8, |line| {
         KLIPPER.iter().any(|start| line.raw().starts_with(start))
     }),
@@ -478,4 +479,11 @@ fn flavor(line: &Line, name: &str) -> bool {
         .strip_prefix("FLAVOR:")
         .or_else(|| comment.strip_prefix("GCODE_FLAVOR ="));
     line.raw().starts_with(';') && value.is_some_and(|value| value.trim_start().starts_with(name))
+}
+
+/// Slic3r's and PrusaSlicer's `reprap` is RepRap/Sprinter, which Marlin comes from; Cura's is
+/// `RepRapFirmware`.
+fn is_sprinter(line: &Line) -> bool {
+    let value = line.comment().trim().strip_prefix("GCODE_FLAVOR =");
+    line.raw().starts_with(';') && value.is_some_and(|value| value.trim() == "REPRAP")
 }

@@ -27,6 +27,7 @@ pub(super) struct Circumstances {
     feed_mode: FeedMode,
     mm_per_unit: f64,
     feed_accel_mm_s2: AxisValues,
+    speed_mm_s: AxisValues,
     unsure_unit: bool,
     motion: Motion,
 }
@@ -39,6 +40,7 @@ impl Circumstances {
             feed_mode: modal.feed_mode,
             mm_per_unit: modal.mm_per_unit,
             feed_accel_mm_s2: interpreter.knobs().feed_accel_mm_s2,
+            speed_mm_s: interpreter.knobs().speed_mm_s,
             unsure_unit: interpreter.knobs().unsure_unit,
             motion: modal.motion,
         }
@@ -102,6 +104,7 @@ impl<'m> Adviser<'m> {
             feed_before: None,
             positions: positions(self.machine, at.motion, mv),
             feed_accel_mm_s2: at.feed_accel_mm_s2,
+            speed_mm_s: at.speed_mm_s,
         };
         let ends = if assessment.blended {
             Ends::Any(0)

@@ -9,7 +9,7 @@ use super::untouched::{
 };
 use crate::interpret::{Facts, FastPathState, FeedMode, KnobState, Motion, Move, MoveKind, Step};
 use crate::limit::{Change, Outcome, Permit, Waiting};
-use crate::machine::{AxisId, Machine, PathMode, RapidJoint, RapidPath};
+use crate::machine::{AXES, AxisId, Machine, PathMode, RapidJoint, RapidPath};
 use crate::power::Assessment;
 use crate::rewrite::{Comment, Mark, has_at_most};
 use crate::syntax::Block;
@@ -127,7 +127,10 @@ impl Entry {
 
     /// Whether a move cuts nothing although it obeys F, so that its F needs no permission.
     pub(super) fn positions(&self, machine: &Machine, mv: &Move) -> bool {
-        self.facts.homes || positions(machine, self.mark.motion, mv) || self.stands_for_rapid(mv)
+        self.facts.homes
+            || self.facts.moves_by_firmware()
+            || positions(machine, self.mark.motion, mv)
+            || self.stands_for_rapid(mv)
     }
 
     /// Whether a step is one of its own.
@@ -196,6 +199,7 @@ impl Entry {
             && (self.feed_mode_words().next().is_none() || self.may_be_per_minute());
         let feed = [
             (facts.homes, "it homes the axes"),
+            (facts.own_feed.is_some(), facts.own_feed.unwrap_or_default()),
             (facts.dwell_takes_feed, "an F in it would be its dwell"),
             (no_feed.is_some(), no_feed.unwrap_or_default()),
             (
@@ -251,6 +255,10 @@ impl Entry {
             feed_before: self.feed_before(),
             positions: self.positions(machine, mv),
             feed_accel_mm_s2,
+            speed_mm_s: self
+                .knobs
+                .as_ref()
+                .map_or([f64::INFINITY; AXES], |knobs| knobs.speed_mm_s),
         }
     }
 
@@ -266,7 +274,7 @@ impl Entry {
                 "it may be skipped (block delete)",
             ),
             (
-                facts.boundary && facts.tool_words.is_none(),
+                facts.boundary && facts.tool_words.is_none() && !facts.moves_by_firmware(),
                 "it stops, changes the tool or ends the program",
             ),
             (facts.turns_knob, "it sets limits itself"),

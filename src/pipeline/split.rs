@@ -64,7 +64,7 @@ impl Entry {
             !places.absolute || mv.moving.contains(AxisId::E as usize) && !places.extruder_absolute;
         let checks = [
             (
-                facts.fixed.is_some() || facts.cycle || facts.reference.is_some(),
+                facts.kept().is_some() || facts.cycle || facts.reference.is_some(),
                 "it is not a plain line",
             ),
             (

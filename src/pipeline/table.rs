@@ -151,7 +151,7 @@ impl Table {
             feed_mode: entry.feed_mode,
             mm_per_unit: entry.facts.feed_mm_per_unit,
             mm_per_unit_before: entry.mm_per_unit_before,
-            fixed: entry.facts.fixed,
+            fixed: entry.facts.kept(),
             no_motion_word: facts.no_motion_word,
         };
         if let Some(entered) = self.lines.get_mut(&line) {

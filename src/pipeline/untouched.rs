@@ -1,7 +1,7 @@
 //! Why the words of a block are left as they are, and what helps.
 
 use super::line_key::IN_A_FILE;
-use crate::interpret::{Facts, MOVES_OF_ITSELF, TOOL_CHANGE_UNKNOWN};
+use crate::interpret::{Facts, MOVES_OF_ITSELF, RUNS_A_FILE, SETS_UNKNOWN, TOOL_CHANGE_UNKNOWN};
 use crate::machine::{Lathe, Machine, PathMode};
 use crate::motion::{CYCLE, TURNING_CYCLE};
 
@@ -75,6 +75,15 @@ pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static s
         MOVES_OF_ITSELF => {
             "write a change of the tool on a line of its own; how a word of the machine's \
              builder moves, only the machine can change"
+        }
+        RUNS_A_FILE => {
+            "where the file moves nothing, list the command under [language] of the machine file in \
+             `ignored_macros`; else list it in `unknown_macros` and put the file's text next to the \
+             program, into a file of the command's name such as G32.gcode"
+        }
+        SETS_UNKNOWN => {
+            "put what the macro does next to the program, into a file of its name such as \
+             START_PRINT.gcode"
         }
         COMPENSATED | UNDER_COMPENSATION => "lower the feed by hand",
         WITHOUT_STOP if machine.controller.name != language.name => {

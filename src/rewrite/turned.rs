@@ -169,7 +169,8 @@ impl<'m> Turned<'m> {
                 KnobTarget::Speed => own_path_speed(self.machine)?,
                 KnobTarget::CruiseRatio => {
                     state
-                        .square
+                        .corner
+                        .square()
                         .or_else(|| Square::of(self.machine))?
                         .cruise_ratio
                 }

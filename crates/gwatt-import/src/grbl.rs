@@ -51,6 +51,7 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
         axis(&mut found, log, &settings, index, id);
     }
     corners(&mut found, log, &settings);
+    laser_mode(&mut found, &settings);
     if let Some(setting) = settings.get(&30)
         && let Some(rpm) = log.number(&setting.place, setting.text)
         && rpm > 0.0
@@ -168,6 +169,23 @@ fn homing(
     let field = format!("reference_{unit} = {}", shown(place));
     let why = "from $23, $27 and $13x; 0 if built with HOMING_FORCE_SET_ORIGIN";
     found.axis(id).maybe.push(entry(field, why));
+}
+
+/// `$32`.
+fn laser_mode(found: &mut Found, settings: &BTreeMap<u16, Setting<'_>>) {
+    let Some(setting) = settings.get(&32) else {
+        return;
+    };
+    let on = match setting.text.parse::<f64>() {
+        Ok(0.0) => false,
+        Ok(1.0) => true,
+        // grblHAL's 2 is lathe mode.
+        _ => return,
+    };
+    found.path(
+        format!("laser_mode = {on}"),
+        setting.place.source(setting.whole),
+    );
 }
 
 /// `$11`, `$12`.

@@ -28,6 +28,13 @@ pub const TOOL_CHANGE_UNKNOWN: &str = "it changes the tool, before or after its 
 /// Why a block keeps its words in which the machine moves of itself.
 pub const MOVES_OF_ITSELF: &str = "the machine moves axes of itself in it";
 
+/// Why a command of a printer takes no F that moves in a way of its own.
+pub const OWN_MOVES: &str = "only the firmware knows how it moves";
+/// Why a printer's command keeps its words that runs a file of the machine.
+pub const RUNS_A_FILE: &str = "the machine runs a file of its own for it";
+/// The same where nothing is known of what a macro sets.
+pub const SETS_UNKNOWN: &str = "what it sets only the machine knows";
+
 /// Why a block with two G words of one modal group keeps its words: it is the last that counts.
 pub const TWO_OF_A_GROUP: &str = "it has two G words of one group";
 
@@ -55,6 +62,8 @@ pub struct Facts {
     pub dwell_takes_feed: bool,
     /// Why none of its words may be changed, as in "it cuts a thread".
     pub fixed: Option<&'static str>,
+    /// Why no F may be written into it, where the limits in force hold for its moves all the same.
+    pub own_feed: Option<&'static str>,
     /// It moves before any motion word was in force: there is none to put back.
     pub no_motion_word: bool,
     /// Its moves are those of a canned cycle, and may stand as single blocks.
@@ -104,6 +113,18 @@ pub struct Facts {
 }
 
 impl Facts {
+    /// Why it is no move by its own words alone, if it is not.
+    #[must_use]
+    pub fn kept(&self) -> Option<&'static str> {
+        self.fixed.or(self.own_feed)
+    }
+
+    /// Whether its moves are the firmware's own.
+    #[must_use]
+    pub fn moves_by_firmware(&self) -> bool {
+        self.own_feed == Some(OWN_MOVES)
+    }
+
     /// Whether the modal state before the block must be the original's: it shows it, keeps it, or
     /// may be where the program goes on by hand.
     #[must_use]

@@ -74,7 +74,8 @@ impl Control<'_> {
         };
 
         // From here on, it happens.
-        (self.moved, self.printer.pending) = (true, *moving);
+        (self.moved, self.printer.stands) = (true, false);
+        self.printer.pending = *moving;
         steps.push(Step::Move(Move {
             line,
             number: block.number.map(|word| word.value),

@@ -5,8 +5,8 @@ use super::code::Motion;
 use super::control::{Control, Run};
 use super::report::Report;
 use crate::rules::Macros;
-use gwatt_machine::CornerRule;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
+use gwatt_machine::{CornerRule, LaserMode};
 use gwatt_motion::{ActionKind, FeedMode};
 use gwatt_syntax::{Block, Issue, IssueKind, MAX_ISSUES};
 
@@ -151,8 +151,14 @@ impl Control<'_> {
             self.machine.axes.get(index)?.as_ref()
         };
         let most = match number {
-            // No laser mode.
-            32 => Some(0.0),
+            // Laser mode: 1 is on.
+            32 => {
+                return match self.machine.controller.queue.laser_mode {
+                    LaserMode::Off => value == 0.0,
+                    LaserMode::On => value == 1.0,
+                    LaserMode::Unknown => matches!(value, 0.0 | 1.0),
+                };
+            }
             11 => match self
                 .machine
                 .controller

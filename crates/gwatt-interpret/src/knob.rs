@@ -1,7 +1,7 @@
 //! Knobs in force: words by which a program lowers acceleration or rapid speed.
 
 use gwatt_machine::{AXES, AxisSet, AxisValues, Knob, KnobTarget, KnobUnit, LEVEL_GROUPS, Machine};
-use gwatt_motion::{MoveKind, Square, own_path_accel, own_path_speed, raise_to_path};
+use gwatt_motion::{Corner, MoveKind, own_path_accel, own_path_speed, raise_to_path};
 
 /// Limits in force after the knobs that a program has turned.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,8 +34,8 @@ pub struct KnobState {
     pub speed_mm_s: AxisValues,
     /// The program has set limits whose unit is not known: inches count, which are more.
     pub unsure_unit: bool,
-    /// How the look-ahead planner takes corners and hills; `None`: as the profile says.
-    pub square: Option<Square>,
+    /// How the look-ahead planner takes corners and hills.
+    pub corner: Corner,
     /// The level in force of each group of words that select one; `None`: any of them may be.
     pub levels: [Option<u8>; LEVEL_GROUPS],
     /// Accelerations of feed moves and of rapids that the levels in force give, of which
@@ -66,7 +66,7 @@ impl KnobState {
             path_speed_mm_s: f64::INFINITY,
             speed_mm_s: [f64::INFINITY; AXES],
             unsure_unit: false,
-            square: None,
+            corner: Corner::default(),
             levels: [None; LEVEL_GROUPS],
             base_accel_mm_s2: [accel; 2],
             base_rapid_factor: 1.0,

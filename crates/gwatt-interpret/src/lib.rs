@@ -96,7 +96,8 @@ pub use control::Effects;
 pub use dialect::NO_POINT;
 pub use execute::Interpreter;
 pub use facts::{
-    CalledCycle, Facts, MOVES_OF_ITSELF, Passage, TOOL_CHANGE_UNKNOWN, TWO_OF_A_GROUP, ToolWords,
+    CalledCycle, Facts, MOVES_OF_ITSELF, OWN_MOVES, Passage, RUNS_A_FILE, SETS_UNKNOWN,
+    TOOL_CHANGE_UNKNOWN, TWO_OF_A_GROUP, ToolWords,
 };
 pub use fast_path_state::FastPathState;
 pub use flow::{Flow, Limits, Place};

@@ -1,8 +1,9 @@
 //! M words, S and T: actions, and the loads that they switch.
 
+use super::code::Motion;
 use super::control::{Control, Run};
 use super::facts::{TOOL_CHANGE_UNKNOWN, ToolWords};
-use gwatt_machine::ToolChange;
+use gwatt_machine::{LaserMode, ToolChange};
 use gwatt_motion::{ActionKind, Step};
 use gwatt_syntax::Word;
 use gwatt_syntax::source::Span;
@@ -19,6 +20,10 @@ impl Control<'_> {
 
     pub(super) fn speed_and_tool(&mut self, run: &mut Run<'_, '_>) {
         self.spindle_mode(run);
+        let laser = self.machine.controller.queue.laser_mode;
+        if laser != LaserMode::Off {
+            self.beam_waits(run);
+        }
         let other = run
             .words
             .m
@@ -31,7 +36,15 @@ impl Control<'_> {
             && !other
         {
             self.set_speed(value, run);
-            run.act(ActionKind::SpindleSpeed, value);
+            let kind = if laser != LaserMode::Off && moves_by_words(run) {
+                if laser == LaserMode::Unknown && self.switches.spindle != 5 {
+                    note_laser_mode(run);
+                }
+                ActionKind::SpeedInMotion
+            } else {
+                ActionKind::SpindleSpeed
+            };
+            run.act(kind, value);
             self.note_spindle(run);
         }
         if let Some(tool) = run.words.take(b'T')
@@ -42,6 +55,25 @@ impl Control<'_> {
                 run.act(ActionKind::ToolSelect, tool);
             }
             run.facts.selects_tool = true;
+        }
+    }
+
+    /// In laser mode a beam of constant power (M3) waits for the axes where a line without motion
+    /// changes between G0 and feeds (grbl, gcode.c, step 3b).
+    fn beam_waits(&self, run: &mut Run<'_, '_>) {
+        let feeds =
+            |motion: Motion| matches!(motion, Motion::Linear | Motion::ArcCw | Motion::ArcCcw);
+        let words = run.block.words.iter();
+        let motion = words
+            .rev()
+            .find_map(|word| match (word.letter, word.value) {
+                (b'G', 0.0 | 80.0) => Some(false),
+                (b'G', 1.0 | 2.0 | 3.0) => Some(true),
+                _ => None,
+            });
+        let changes = motion.is_some_and(|feed| feed != feeds(self.modal.motion));
+        if changes && self.switches.spindle == 3 && !run.words.has_axes() {
+            run.act(ActionKind::MayStop, 0.0);
         }
     }
 
@@ -234,6 +266,23 @@ impl Control<'_> {
             }
         }
     }
+}
+
+/// Whether the axes of a block are where a motion word takes them, and belong to no other word.
+fn moves_by_words(run: &Run<'_, '_>) -> bool {
+    let other = |number: f64| matches!(number.trunc() as u16, 10 | 28 | 30 | 38 | 92);
+    let words = &run.block.words;
+    let taken = words
+        .iter()
+        .any(|word| word.letter == b'G' && other(word.value));
+    run.words.has_axes() && !taken
+}
+
+fn note_laser_mode(run: &mut Run<'_, '_>) {
+    let message = "whether laser mode ($32) is on is not known: S in blocks that move counts both \
+                   as a stop and as none; `[path] laser_mode` in the machine file says which";
+    let span = run.whole();
+    run.report.note_once("laser-mode", message, span);
 }
 
 fn is_in_motion(step: &Step) -> bool {

@@ -330,7 +330,7 @@ impl Control<'_> {
         }
         let strays = |arc| stray::of_arc(arc, &self.position.at, end);
         let stray = arc.as_ref().map_or(Stray::NONE, strays);
-        self.moved = true;
+        (self.moved, self.printer.stands) = (true, false);
         self.printer.pending = self.not_queued(arc.is_some(), commanded, length_mm);
         run.steps.push(Step::Move(Move {
             line: run.line,

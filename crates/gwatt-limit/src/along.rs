@@ -52,6 +52,7 @@ impl Solver<'_> {
             return Some([down(speed_mm_s.min(own_mm_s))?; AXES]);
         }
         let mut values = [0.0; AXES];
+        let mut limits = false;
         for axis in self.machine.axis_set.iter() {
             let Some(own) = &self.machine.axes[axis] else {
                 continue;
@@ -63,14 +64,17 @@ impl Solver<'_> {
                     mv.moving.contains(axis) || mv.unknown_start.contains(axis),
                 ))
             };
+            let most_mm_s = own.rapid_mm_s.min(permit.speed_mm_s[axis]);
             let unit = |speed| data.unit.speed_value(own, speed, permit.knob_mm_per_unit);
-            values[axis] = if share > 0.0 {
-                down(unit((speed_mm_s * share).min(own.rapid_mm_s)))?
-            } else {
-                unit(own.rapid_mm_s)
-            };
+            let capped = down(unit((speed_mm_s * share).min(most_mm_s))).filter(|_| share > 0.0);
+            if capped.is_none() && share > 0.0 && !mv.unknown_start.is_empty() {
+                return None;
+            }
+            limits |= capped.is_some();
+            // An axis that hardly moves is held by the others.
+            values[axis] = capped.unwrap_or(unit(most_mm_s));
         }
-        Some(values)
+        limits.then_some(values)
     }
 
     /// The speed that no axis of a move exceeds, mm/s, at the largest override.

@@ -51,6 +51,8 @@ pub struct Permit {
     /// Acceleration limits of feed moves in force, for a rapid that is written
     /// as one, mm/s².
     pub feed_accel_mm_s2: AxisValues,
+    /// Speed limits of axes that the program has set, mm/s; infinite: the machine's own.
+    pub speed_mm_s: AxisValues,
 }
 
 impl Permit {

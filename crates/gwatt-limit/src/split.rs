@@ -13,7 +13,7 @@ use super::lever::{Levers, levers};
 use super::road::{Lengths, MOST, NO_FIT, Road, SHORT, SPLIT_TRIES};
 use super::solver::Solver;
 use gwatt_machine::{AxisValues, Knob, KnobTarget, LookAhead, PathMode};
-use gwatt_motion::{Corner, Move, MoveKind};
+use gwatt_motion::{Move, MoveKind};
 use gwatt_plan::{is_independent, plan};
 use gwatt_power::{Assessment, Certificate, plans_lines};
 
@@ -174,8 +174,6 @@ impl Solver<'_> {
 
 /// The share of each hill of speed that is cruised at least.
 pub(super) fn cruise_ratio(mv: &Move, rules: &LookAhead) -> f64 {
-    match mv.corner {
-        Corner::Square(square) => square.cruise_ratio,
-        _ => rules.min_cruise_ratio,
-    }
+    let set = mv.corner.square();
+    set.map_or(rules.min_cruise_ratio, |square| square.cruise_ratio)
 }

@@ -39,6 +39,21 @@ pub struct Queue {
     pub joins: Vec<QueueWord>,
     /// Extended commands of printers that the lists name.
     pub names: Vec<(Command, QueueEffect)>,
+    /// Whether S in a block that moves acts with the motion, as in grbl's laser mode.
+    pub laser_mode: LaserMode,
+}
+
+/// Whether the power of a laser follows the motion ($32 of grbl): S in a block that moves stops
+/// nothing then.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum LaserMode {
+    /// It is off, or the control has none.
+    #[default]
+    Off,
+    /// It is on.
+    On,
+    /// The control has one, and the machine file does not say whether it is on.
+    Unknown,
 }
 
 /// What a word does to the motion before it.
@@ -80,7 +95,7 @@ impl Queue {
 
 #[cfg(test)]
 mod tests {
-    use super::{Command, Queue, QueueEffect, QueueWord};
+    use super::{Command, LaserMode, Queue, QueueEffect, QueueWord};
 
     #[test]
     fn a_letter_alone_stands_for_all_its_words() {
@@ -91,6 +106,7 @@ mod tests {
             passes: vec![word(b'M', Some(620))],
             joins: vec![word(b'T', None)],
             names: vec![(Command::Macros("SET_LED".to_owned()), QueueEffect::Join)],
+            laser_mode: LaserMode::Off,
         };
         assert_eq!(queue.effect(b'S', 15), Some(QueueEffect::Stop));
         assert_eq!(queue.effect(b'M', 80), Some(QueueEffect::Stop));

@@ -16,5 +16,7 @@ mod start;
 pub use fixed::{CYCLE, TURNING_CYCLE};
 pub use length::path_length;
 pub use moves::*;
-pub use path_limits::{Square, hold_to_path, own_path_accel, own_path_speed, raise_to_path};
+pub use path_limits::{
+    SpeedSteps, Square, hold_to_path, own_path_accel, own_path_speed, raise_to_path,
+};
 pub use start::Start;

@@ -1,6 +1,6 @@
 //! What a program does: moves and actions, in machine coordinates.
 
-use super::path_limits::Square;
+use super::path_limits::{SpeedSteps, Square};
 use gwatt_machine::{AxisSet, AxisValues, PathMode};
 
 /// What a program block does, in the order in which it does it.
@@ -223,6 +223,27 @@ pub enum Corner {
     },
     /// Rounded by limits that the program has set.
     Square(Square),
+    /// Taken with steps of speed that the program has set (M205, M566).
+    Steps(SpeedSteps),
+    /// Passed within a distance that the program has set (M205 J), mm.
+    Deviation(f64),
+}
+
+impl Corner {
+    /// What the program has set for corners and hills of Klipper's look-ahead, if it has.
+    #[must_use]
+    pub fn square(self) -> Option<Square> {
+        match self {
+            Self::Square(square) => Some(square),
+            _ => None,
+        }
+    }
+
+    /// Whether the program has set it by a value.
+    #[must_use]
+    pub fn is_set(self) -> bool {
+        matches!(self, Self::Square(_) | Self::Steps(_) | Self::Deviation(_))
+    }
 }
 
 impl Default for Corner {
@@ -281,6 +302,8 @@ pub enum EarlyLimits {
 pub enum ActionKind {
     /// S: the speed is set.
     SpindleSpeed,
+    /// The same in a block that moves, where the control may have a laser mode.
+    SpeedInMotion,
     /// M3, M4, M5.
     Spindle,
     /// T: a tool is chosen.

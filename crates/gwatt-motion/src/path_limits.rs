@@ -1,6 +1,6 @@
 //! Limits along the path, as Klipper has them instead of limits of X and Y.
 
-use gwatt_machine::{Axis, AxisValues, CornerRule, Machine};
+use gwatt_machine::{Axis, AxisId, AxisValues, CornerRule, Machine};
 
 /// What Klipper's `SET_VELOCITY_LIMIT` sets for its look-ahead.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,6 +32,58 @@ impl Square {
             corner_mm_s: self.corner_mm_s.max(other.corner_mm_s),
             cruise_ratio: self.cruise_ratio.min(other.cruise_ratio),
         }
+    }
+}
+
+/// The largest steps of speed at corners, as M205 of Marlin and M566 of `RepRapFirmware` set them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpeedSteps {
+    /// Of X, Y, Z and E, mm/s; infinite where none is given.
+    pub mm_s: [f64; 4],
+    /// Only between two moves that extrude or two that do not.
+    pub same_kind_only: bool,
+}
+
+impl SpeedSteps {
+    /// The axes that have such words.
+    pub const AXES: [AxisId; 4] = [AxisId::X, AxisId::Y, AxisId::Z, AxisId::E];
+
+    /// What the profile of the machine says; `None` where it has another rule for corners.
+    #[must_use]
+    pub fn of(machine: &Machine) -> Option<Self> {
+        let (steps, same_kind_only) = match &machine.controller.planner.look_ahead?.corner {
+            CornerRule::ClassicJerk { step_mm_s } => (*step_mm_s, false),
+            CornerRule::SpeedStep {
+                step_mm_s,
+                same_kind_only,
+            } => (*step_mm_s, *same_kind_only),
+            _ => return None,
+        };
+        Some(Self {
+            mm_s: Self::AXES.map(|axis| steps[axis as usize]),
+            same_kind_only,
+        })
+    }
+
+    /// The steps of all axes, of which `own` are the profile's.
+    #[must_use]
+    pub fn over(&self, own: &AxisValues) -> AxisValues {
+        let mut all = *own;
+        for (axis, step) in Self::AXES.into_iter().zip(self.mm_s) {
+            all[axis as usize] = step;
+        }
+        all
+    }
+
+    /// The larger ones of both.
+    #[must_use]
+    pub fn or_faster(self, other: Self) -> Self {
+        let mut faster = self;
+        for (step, other) in faster.mm_s.iter_mut().zip(other.mm_s) {
+            *step = step.max(other);
+        }
+        faster.same_kind_only &= other.same_kind_only;
+        faster
     }
 }
 

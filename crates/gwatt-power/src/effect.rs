@@ -3,7 +3,7 @@
 //! Input: the controller's profile and actions in program order. Output: for
 //! each, whether the motion stops there.
 
-use gwatt_machine::{Controller, MESSAGE, QueueEffect};
+use gwatt_machine::{Controller, LaserMode, MESSAGE, QueueEffect};
 use gwatt_motion::{Action, ActionKind};
 
 /// What an action does to the motion.
@@ -52,7 +52,7 @@ impl Switched {
     pub fn effect(&mut self, controller: &Controller, action: &Action) -> Effect {
         let number = (action.value * 10.0).round().clamp(0.0, 65_535.0) as u16;
         let letter = match action.kind {
-            ActionKind::SpindleSpeed => b'S',
+            ActionKind::SpindleSpeed | ActionKind::SpeedInMotion => b'S',
             ActionKind::ToolSelect => b'T',
             ActionKind::Offset => b'G',
             ActionKind::Message => MESSAGE,
@@ -80,7 +80,13 @@ impl Switched {
         let changes = self.switch(action, number);
         match controller.queue.effect(letter, number) {
             Some(QueueEffect::Stop) => Effect::Stop,
-            Some(QueueEffect::StopOnChange) if changes => Effect::Stop,
+            Some(QueueEffect::StopOnChange) if changes => {
+                match (action.kind, controller.queue.laser_mode) {
+                    (ActionKind::SpeedInMotion, LaserMode::On) => Effect::Part,
+                    (ActionKind::SpeedInMotion, LaserMode::Unknown) => Effect::Unknown,
+                    _ => Effect::Stop,
+                }
+            }
             Some(QueueEffect::Pass) => Effect::Part,
             Some(QueueEffect::Join | QueueEffect::StopOnChange) => Effect::None,
             None => match action.kind {
@@ -88,7 +94,7 @@ impl Switched {
                 // A printer's T changes the tool.
                 ActionKind::ToolSelect if printer && changes => Effect::Unknown,
                 ActionKind::ToolSelect => Effect::None,
-                ActionKind::SpindleSpeed if printer => Effect::None,
+                ActionKind::SpindleSpeed | ActionKind::SpeedInMotion if printer => Effect::None,
                 _ => Effect::Unknown,
             },
         }
@@ -100,7 +106,7 @@ impl Switched {
         match (action.kind, number) {
             (ActionKind::Spindle, _) => self.spindle = number,
             // A spindle that stands still keeps the speed for later.
-            (ActionKind::SpindleSpeed, _) => {
+            (ActionKind::SpindleSpeed | ActionKind::SpeedInMotion, _) => {
                 self.speed = action.value;
                 return matches!(self.spindle, 30 | 40) && before != *self;
             }

@@ -55,17 +55,19 @@ pub(super) fn slower_demand(
         return None;
     }
     planned.slowed(1.0)?;
-    let mut demand = piece_demand(model, mv, planned, EXACT);
-    let want = below(model, &demand, found);
+    let mut demand = piece_demand(model, mv, planned, below(model, want, [found, None]));
+    let want = below(model, want, [found, Some(&demand)]);
     let mut slower = Demand::NONE;
     let top_mm_s = planned.top_speed_mm_s();
     for speed_mm_s in speeds_mm_s(top_mm_s) {
         let Some(piece) = planned.slowed(speed_mm_s / top_mm_s) else {
             continue;
         };
-        if !is_quiet(model, mv, &piece, want) {
-            slower.include(&piece_demand(model, mv, &piece, want));
+        if is_quiet(model, mv, &piece, want) {
+            // So are slower ones: the bound grows with the speed.
+            break;
         }
+        slower.include(&piece_demand(model, mv, &piece, want));
     }
     demand.include_slower(slower);
     Some(demand)
@@ -77,16 +79,21 @@ const EXACT: Want = Want {
     ..Want::PEAKS
 };
 
-/// What is wanted of lower speeds where so much is found already: nothing below that. Of
-/// several converters all counts, since one demand speaks of one of them.
-fn below(model: &PowerModel, own: &Demand, found: Option<&Demand>) -> Want {
+/// What is wanted of speeds between which others lie: nothing that stays below what is of
+/// interest with what may lie there, or below what is `found`. Of several converters all counts,
+/// since one demand speaks of one of them.
+fn below(model: &PowerModel, want: Want, found: [Option<&Demand>; 2]) -> Want {
     if model.converters.len() != 1 {
         return EXACT;
     }
-    let found = found.unwrap_or(own);
+    let [mut floor_w, mut regen_floor_w] = [want.floor_w, want.regen_floor_w];
+    for found in found.into_iter().flatten() {
+        floor_w = floor_w.max(found.peak_w);
+        regen_floor_w = regen_floor_w.max(found.regen_w);
+    }
     Want {
-        floor_w: own.peak_w.max(found.peak_w) / BETWEEN,
-        regen_floor_w: own.regen_w.max(found.regen_w) / BETWEEN,
+        floor_w: floor_w / BETWEEN,
+        regen_floor_w: regen_floor_w / BETWEEN,
         ..EXACT
     }
 }
@@ -121,16 +128,16 @@ impl Shift {
 /// any lower speed: at lower overrides each place is passed with `v² = x − δ`, x the
 /// square of the planned speed, and the ramp goes on to places where the planned one has
 /// turned round.
-/// `sides`: whether it is sped up so, and braked; `found` as in [`slower_demand`].
+/// `sides`: whether it is sped up so, and braked; `want` and `found` as in [`slower_demand`].
 pub(super) fn shifted_demand(
     model: &PowerModel,
     mv: &Move,
     planned: &Planned<u64>,
     (shift, sides): (Shift, [bool; 2]),
-    found: Option<&Demand>,
+    (want, found): (Want, Option<&Demand>),
 ) -> Demand {
-    let mut demand = piece_demand(model, mv, planned, EXACT);
-    let want = below(model, &demand, found);
+    let mut demand = piece_demand(model, mv, planned, below(model, want, [found, None]));
+    let want = below(model, want, [found, Some(&demand)]);
     let Speeds2 { start, end, .. } = planned.speeds2;
     let mut lower = Demand::NONE;
     for (side, (low2, falls)) in sides.into_iter().zip([(start, false), (end, true)]) {

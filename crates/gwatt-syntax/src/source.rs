@@ -79,20 +79,38 @@ pub enum SourceError {
     Io(#[from] std::io::Error),
 }
 
-/// Offset after the first line end of `bytes`: LF, CR and CRLF each are one.
+/// CRs before an LF that are one line end together with it: programs that went through a
+/// conversion twice have two.
+const CRS: usize = 8;
+
+/// Offset after the first line end of `bytes`: LF, CR, and an LF after CRs each are one.
 ///
-/// `None` when there is no line end, and also when `bytes` ends in a CR, since
-/// an LF that follows would belong to it.
+/// `None` when there is no line end, and also when `bytes` ends in CRs, since
+/// an LF that follows would belong to them.
 fn line_length(bytes: &[u8]) -> Option<usize> {
     let at = memchr2(b'\n', b'\r', bytes)?;
-    if bytes.get(at) == Some(&b'\n') {
-        return Some(at + 1);
-    }
-    match bytes.get(at + 1) {
-        Some(b'\n') => Some(at + 2),
+    let end = bytes.get(at..).unwrap_or_default();
+    let crs = end
+        .iter()
+        .take(CRS)
+        .take_while(|byte| **byte == b'\r')
+        .count();
+    match end.get(crs) {
+        Some(b'\n') => Some(at + crs + 1),
         Some(_) => Some(at + 1),
         None => None,
     }
+}
+
+/// The same where nothing comes after `bytes`: their length where there is no line end.
+fn last_line_length(bytes: &[u8]) -> usize {
+    memchr2(b'\n', b'\r', bytes).map_or(bytes.len(), |at| at + 1)
+}
+
+/// How many CRs `bytes` end in, of those that may belong to one line end.
+fn last_crs(bytes: &[u8]) -> usize {
+    let last = bytes.iter().rev().take(CRS);
+    last.take_while(|byte| **byte == b'\r').count()
 }
 
 /// The lines of `bytes`, each with its line end; the last may lack one.
@@ -102,7 +120,7 @@ pub fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
         if rest.is_empty() {
             return None;
         }
-        let length = line_length(rest).unwrap_or(rest.len());
+        let length = line_length(rest).unwrap_or_else(|| last_line_length(rest));
         let (line, after) = rest.split_at_checked(length)?;
         rest = after;
         Some(line)
@@ -113,8 +131,8 @@ pub fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
 #[must_use]
 pub fn split_line_end(line: &[u8]) -> (&[u8], &[u8]) {
     let end = match line {
-        [.., b'\r', b'\n'] => 2,
-        [.., b'\n' | b'\r'] => 1,
+        [before @ .., b'\n'] => 1 + last_crs(before),
+        [.., b'\r'] => 1,
         _ => 0,
     };
     line.split_at_checked(line.len() - end)
@@ -205,12 +223,12 @@ impl<R: Read> LineReader<R> {
         self.searched = self.start;
         loop {
             if self.at_end {
-                return Ok((self.start < self.end).then_some(self.end));
+                let rest = self.buffer.get(self.start..self.end).unwrap_or_default();
+                return Ok((!rest.is_empty()).then(|| self.start + last_line_length(rest)));
             }
-            // A CR at the very end is looked at again: an LF may follow it.
+            // CRs at the very end are looked at again: an LF may follow them.
             let unread = self.buffer.get(self.start..self.end).unwrap_or_default();
-            let lone_cr = usize::from(unread.last() == Some(&b'\r'));
-            self.searched = self.searched.max(self.end - lone_cr);
+            self.searched = self.searched.max(self.end - last_crs(unread));
             if self.end - self.start > MAX_LINE_BYTES {
                 return Err(SourceError::LineTooLong {
                     line: self.line + 1,
@@ -292,7 +310,19 @@ mod tests {
     #[test]
     fn line_ends_may_be_mixed() {
         let lines = all(&mut parts(&["a\nb\rc\r\n\n\r\r\nlast"]));
-        assert_eq!(lines, ["a\n", "b\r", "c\r\n", "\n", "\r", "\r\n", "last"]);
+        assert_eq!(lines, ["a\n", "b\r", "c\r\n", "\n", "\r\r\n", "last"]);
+        let many = format!("a{}\n", "\r".repeat(CRS + 1));
+        for text in [many.as_str(), "a\r\rb\r\r", "\r\r\r", "a\r\r\n\r\r\nb"] {
+            let lines = all(&mut parts(&[text]));
+            assert_eq!(lines.concat(), text);
+            let whole = super::lines(text.as_bytes());
+            assert!(whole.eq(lines.iter().map(String::as_bytes)), "{lines:?}");
+            let no_end_within = |line: &str| {
+                let (text, _) = split_line_end(line.as_bytes());
+                !text.contains(&b'\r')
+            };
+            assert!(lines.iter().all(|line| no_end_within(line)), "{lines:?}");
+        }
     }
 
     #[test]
@@ -301,6 +331,7 @@ mod tests {
             all(&mut parts(&["a\r", "\nb\r", "c\r"])),
             ["a\r\n", "b\r", "c\r"]
         );
+        assert_eq!(all(&mut parts(&["a\r", "\r", "\nb"])), ["a\r\r\n", "b"]);
     }
 
     #[test]
@@ -338,7 +369,8 @@ mod tests {
 
     #[test]
     fn line_ends_are_taken_off_once() {
-        let cases: [(&[u8], &[u8]); 5] = [
+        let cases: [(&[u8], &[u8]); 6] = [
+            (b"a\r\r\n", b"\r\r\n"),
             (b"a\r\n", b"\r\n"),
             (b"a\n", b"\n"),
             (b"a\r", b"\r"),

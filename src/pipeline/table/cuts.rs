@@ -11,7 +11,7 @@ pub(super) fn cuts_by_feed(entry: &Entry, skips: bool) -> bool {
     feeds
         && !entry.moves_by(|kind| kind == MoveKind::Rapid)
         && !(facts.compensated || facts.cycle || facts.reads_state || facts.looks_at_state())
-        && facts.fixed.is_none()
+        && facts.kept().is_none()
         && facts.feed_word.is_none()
         && entry.feed_mode == FeedMode::PerMinute
         && entry.keeps_its_words(skips).is_none()

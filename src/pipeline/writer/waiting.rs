@@ -79,7 +79,7 @@ impl<R: Read + Seek, W: Write> Writer<'_, R, W> {
         });
         let goes_on = matches!(entry.steps.first(), Some(Step::Move(mv))
             if mv.kind == MoveKind::Rapid && mv.moves_axes() && mv.loads == last.loads);
-        let kept = facts.checksum || facts.compensated || facts.cycle || facts.fixed.is_some();
+        let kept = facts.checksum || facts.compensated || facts.cycle || facts.kept().is_some();
         let cuts = entry.its_moves().any(|mv| mv.kind != MoveKind::Rapid);
         let free = !kept && entry.block.delete_level == 0 && !cuts;
         free && self.mark.motion == Motion::Rapid && (goes_on || changes && entry.moves == 0)
@@ -130,7 +130,7 @@ fn ended_by_rapid(entry: &Entry) -> Option<Move> {
         return None;
     };
     let facts = &entry.facts;
-    let kept = facts.checksum || facts.compensated || facts.cycle || facts.fixed.is_some();
+    let kept = facts.checksum || facts.compensated || facts.cycle || facts.kept().is_some();
     let rapid = mv.kind == MoveKind::Rapid && mv.moves_axes() && mv.unknown_start.is_empty();
     (rapid && !kept && entry.block.delete_level == 0).then(|| mv.clone())
 }

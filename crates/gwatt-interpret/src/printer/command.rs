@@ -1,17 +1,16 @@
 //! What a command does: which of its readers takes it, in which order.
 
 use super::early::rises;
-use super::left_out::{note_corners, note_levelling, note_uncounted};
+use super::left_out::{note_levelling, note_uncounted};
 use super::line::{Head, Parameters, Text, has, holds_word, value};
 use super::verify_checksum;
 use crate::code::{GCode, Motion};
 use crate::control::{Control, Run};
 use crate::report::Report;
 use crate::tools::ToolLength;
-use gwatt_machine::{Command, ExtruderMode};
+use gwatt_machine::Command;
 use gwatt_motion::{ActionKind, Step};
 use gwatt_syntax::source::Span;
-use gwatt_syntax::{Block, Word};
 
 /// Most commands that a line may hold.
 const COMMANDS: usize = 32;
@@ -95,6 +94,10 @@ impl Control<'_> {
                 self.code(run, (letter, number, span), &Parameters::new());
                 return None;
             }
+            // RepRapFirmware runs stop.g or sleep.g (GCodes2.cpp, cases 0 and 1).
+            if !self.one_a_line() && number <= 10 && !self.is_listed(letter, number) {
+                self.unknown_moves(run, span);
+            }
             text_command(run, number);
             return None;
         }
@@ -148,7 +151,7 @@ impl Control<'_> {
     }
 
     /// Klipper: what stands between blanks is one parameter.
-    fn names_parameters(&self) -> bool {
+    pub(super) fn names_parameters(&self) -> bool {
         self.machine.controller.language.printer.velocity_limit
     }
 
@@ -267,9 +270,31 @@ impl Control<'_> {
             self.end_optional(run, span);
         } else if letter == b'T' {
             self.tool(run, number, span);
-        } else if !self.own_command(run, (letter, number, span), parameters) {
-            self.ordinary(run, (letter, number, span), parameters);
+        } else if self.limits_other_tool((letter, number), parameters) {
+            let before = self.knobs.clone();
+            self.known_command(run, (letter, number, span), parameters);
+            self.limits_at_least(&before);
+        } else {
+            self.known_command(run, (letter, number, span), parameters);
         }
+    }
+
+    fn known_command(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        head: (u8, u16, Span),
+        parameters: &Parameters,
+    ) {
+        if !self.own_command(run, head, parameters) {
+            self.ordinary(run, head, parameters);
+        }
+    }
+
+    /// Whether limits are those of a tool that is not in use (Marlin: T of M201 and M203): they may
+    /// hold later, so that the higher ones count.
+    fn limits_other_tool(&self, head: (u8, u16), parameters: &Parameters) -> bool {
+        let tool = value(parameters, b'T').filter(|_| matches!(head, (b'M', 2010 | 2030)));
+        tool.is_some_and(|tool| tool != f64::from(self.printer.tool))
     }
 
     /// Commands that printers alone have, or read in their own way.
@@ -293,8 +318,17 @@ impl Control<'_> {
                 run.act(ActionKind::MayStop, 0.0);
             }
             (b'G', 280) => self.home(run, parameters, span),
+            (b'G', 300 | 540..=593 | 600 | 610) if self.names_parameters() => {
+                refuse(
+                    run,
+                    span,
+                    "Klipper does not know this word, and goes on without it",
+                );
+            }
             (b'G', 600) => self.save_position(run, parameters, span),
-            (b'G', 610) => self.return_to_position(run, parameters, span),
+            (b'G', 610) if self.one_a_line() => {
+                self.return_to_position(run, parameters, span);
+            }
             (b'G', 800) => {
                 self.modal.motion = Motion::None;
                 self.unknown_moves(run, span);
@@ -311,6 +345,10 @@ impl Control<'_> {
             }
             (b'M', 1200) => self.push_state(run, span),
             (b'M', 1210) => self.pop_state(run, span),
+            (b'M', 2000) if self.names_parameters() => {
+                let message = "Klipper does not know M200 and goes on without it: E stays a length";
+                run.report.note_once("volumetric", message, span);
+            }
             (b'M', 2000) => self.volumetric(run, parameters, span),
             (b'M', 2010) if parameters.is_empty() => {}
             (b'M', 2030) => self.speed_caps(run, parameters, span),
@@ -323,11 +361,11 @@ impl Control<'_> {
                 self.limit_velocity(run, None, accel, span);
             }
             (b'M', 2040) => return self.path_limits(run, parameters, span),
-            (b'M', 2050) => {
-                if b"XYZEJ".iter().any(|letter| has(parameters, *letter)) {
-                    note_corners(run, span);
+            (b'M', 2050 | 5660) => {
+                self.corner_limits(run, parameters, number, span);
+                if self.one_a_line() {
+                    self.least_speeds(parameters);
                 }
-                self.least_speeds(parameters);
             }
             (b'M', 2070) => self.set_retract(run, parameters, span),
             (b'M', 2080) => self.set_recover(run, parameters, span),
@@ -357,101 +395,6 @@ impl Control<'_> {
         }
         true
     }
-
-    /// A word as other controllers have it.
-    fn ordinary(
-        &mut self,
-        run: &mut Run<'_, '_>,
-        (letter, number, span): (u8, u16, Span),
-        parameters: &Parameters,
-    ) {
-        let printer = &self.machine.controller.language.printer;
-        let moves = letter == b'G' && number <= 30;
-        let to_endstop = moves
-            && printer
-                .endstop_letters
-                .iter()
-                .any(|letter| value(parameters, *letter).is_some_and(|value| value != 0.0));
-        if letter == b'G' && number == 920 && !parameters.is_empty() {
-            // `G92 E` without a number sets nothing.
-            let valued = parameters.iter().any(|parameter| parameter.value.is_some());
-            if !valued {
-                return;
-            }
-        }
-        let head = Word {
-            letter,
-            value: f64::from(number) / 10.0,
-            span,
-            number: span,
-        };
-        let mut words = vec![head];
-        for parameter in parameters {
-            let endstop = printer.endstop_letters.contains(&parameter.letter);
-            let passed = moves && endstop || to_endstop && parameter.letter != b'F';
-            let Some(value) = parameter.value.filter(|_| !passed) else {
-                continue;
-            };
-            words.push(Word {
-                letter: parameter.letter,
-                value,
-                span: parameter.span,
-                number: parameter.number,
-            });
-        }
-        if moves {
-            flags_of_a_move(run, parameters);
-        }
-        let block = Block {
-            words,
-            number: run.block.number,
-            delete_level: run.block.delete_level,
-            tape: false,
-            words_end: run.block.words_end,
-            text_end: run.block.text_end,
-            issues: Vec::new(),
-        };
-        self.words(run, &block);
-        if to_endstop {
-            self.unknown_moves(run, span);
-        }
-    }
-
-    /// Executes the words of a block in the order of other controllers.
-    fn words(&mut self, run: &mut Run<'_, '_>, block: &Block) {
-        let errors = run.report.diagnostics.errors;
-        let mut inner = Run {
-            line: run.line,
-            block,
-            words: &mut *run.words,
-            facts: &mut *run.facts,
-            steps: &mut *run.steps,
-            report: Report {
-                diagnostics: &mut *run.report.diagnostics,
-                line: run.line,
-                text: run.report.text,
-            },
-        };
-        let controller = &self.machine.controller;
-        inner.words.fill(block, controller, &mut inner.report);
-        if inner.report.diagnostics.errors == errors {
-            self.general(&mut inner, errors);
-        }
-    }
-
-    /// M82 and M83 (`Some`), or a change of G90 and G91.
-    pub(crate) fn extruder_mode(&mut self, set: Option<bool>) {
-        if let Some(absolute) = set {
-            self.printer.extruder_absolute = absolute;
-        }
-        let own = self.printer.extruder_absolute;
-        self.modal.extruder_absolute = match self.machine.controller.language.printer.extruder_mode
-        {
-            ExtruderMode::Follows => set.unwrap_or(self.modal.absolute),
-            ExtruderMode::Own => own,
-            ExtruderMode::Either => own && self.modal.absolute,
-        };
-    }
 }
 
 /// Commands with free text: stops, and those that do nothing.
@@ -464,17 +407,6 @@ fn text_command(run: &mut Run<'_, '_>, number: u16) {
         ActionKind::Other
     };
     run.act(kind, f64::from(number) / 10.0);
-}
-
-/// An axis without a number in a move: firmwares differ in what it means.
-fn flags_of_a_move(run: &mut Run<'_, '_>, parameters: &Parameters) {
-    for parameter in parameters.iter().filter(|one| one.value.is_none()) {
-        let letter = parameter.letter as char;
-        let message = format!("`{letter}` has no number after it");
-        run.report
-            .error("missing-number", message, parameter.span)
-            .help("write the number right after the letter, as in `X12.5`");
-    }
 }
 
 /// Refuses a command by name.

@@ -3,7 +3,7 @@
 use super::line::{Parameters, has, value};
 use super::state::{SavedPosition, SavedState};
 use crate::control::{Control, Run};
-use crate::places::EXTRUDER;
+use crate::places::{EXTRUDER, Z};
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_machine::{ALL_AXES, AxisSet};
 use gwatt_motion::ActionKind;
@@ -50,9 +50,10 @@ impl Control<'_> {
         }
     }
 
-    /// G61 S: back to it, all axes but the extruder, or those that are named.
+    /// G61 S: back to it; axes that are named, to as far from it as they say; none: Z first where
+    /// that rises, then the others, then Z.
     ///
-    /// Source: Marlin G61.
+    /// Source: Marlin G61 (`G61.cpp`, `do_blocking_move_to`).
     pub(super) fn return_to_position(
         &mut self,
         run: &mut Run<'_, '_>,
@@ -80,17 +81,43 @@ impl Control<'_> {
             .filter(|axis| has(parameters, axis.letter()))
             .fold(0, |set: u16, axis| set | 1 << *axis as usize);
         let all = self.machine.axis_set.0 & !(1 << EXTRUDER);
-        let chosen = if letters & all == 0 {
-            all
-        } else {
-            letters & all
-        };
         let feed = value(parameters, b'F').filter(|feed| *feed > 0.0);
         let feed = feed.map(|feed| feed * self.modal.mm_per_unit / SECONDS_PER_MINUTE);
-        self.go_back(run, &saved, AxisSet(chosen), feed);
+        let mut saved = saved;
+        let named = AxisSet(letters & all);
+        for axis in named.iter() {
+            let by = value(parameters, ALL_AXES[axis].letter()).unwrap_or(0.0);
+            saved.at[axis] += by * self.modal.mm_per_unit;
+        }
+        if named.is_empty() {
+            self.go_back_in_turn(run, &saved, AxisSet(all), feed);
+        } else {
+            self.go_back(run, &saved, named, feed);
+        }
         if letters & 1 << EXTRUDER != 0 {
             // E only takes the number back, as G92 does.
             self.position.unknown.insert(EXTRUDER);
+        }
+    }
+
+    /// The axes to a kept position, Z while the others stand, above them.
+    fn go_back_in_turn(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        saved: &SavedPosition,
+        axes: AxisSet,
+        feed_mm_s: Option<f64>,
+    ) {
+        let unknown = AxisSet(saved.unknown.0 | self.position.unknown.0);
+        let z = AxisSet(axes.0 & 1 << Z);
+        if unknown.contains(Z) || z.is_empty() {
+            return self.go_back(run, saved, axes, feed_mm_s);
+        }
+        let others = AxisSet(axes.0 & !z.0);
+        let rises = saved.at[Z] > self.position.at[Z];
+        let turns = if rises { [z, others] } else { [others, z] };
+        for axes in turns {
+            self.go_back(run, saved, axes, feed_mm_s);
         }
     }
 
@@ -102,7 +129,7 @@ impl Control<'_> {
         axes: AxisSet,
         feed_mm_s: Option<f64>,
     ) {
-        run.facts.fixed = Some("it returns to a position that was kept");
+        run.facts.own_feed = Some("it returns to a position that was kept");
         let unknown = AxisSet((saved.unknown.0 | self.position.unknown.0) & axes.0);
         let mut end = self.position.at;
         for axis in axes.iter() {

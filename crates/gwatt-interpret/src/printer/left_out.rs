@@ -13,7 +13,6 @@ pub(super) fn note_uncounted(run: &mut Run<'_, '_>, letter: u8, number: u16, spa
             run.report.note_once("backlash", message, span);
         }
         (b'M', 4200 | 3750) => note_levelling(run, span),
-        (b'M', 5660) => note_corners(run, span),
         _ => {}
     }
 }
@@ -29,7 +28,7 @@ pub(super) fn note_levelling(run: &mut Run<'_, '_>, span: Span) {
 }
 
 pub(super) fn note_corners(run: &mut Run<'_, '_>, span: Span) {
-    let message = "speeds of corners that the program sets are not followed: those of the machine \
-                   file count, and higher ones draw more";
+    let message = "speeds of corners that the program sets by another rule than the machine file's \
+                   are not followed: those of the machine file count, and higher ones draw more";
     run.report.note_once("corner-speeds", message, span);
 }

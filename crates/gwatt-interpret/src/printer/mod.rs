@@ -9,6 +9,7 @@
 pub(super) mod language;
 mod arc;
 mod command;
+mod corners;
 mod early;
 mod heat;
 mod kept;
@@ -16,6 +17,7 @@ mod left_out;
 mod line;
 mod named;
 mod optional;
+mod ordinary;
 mod position;
 mod retract;
 mod scale;

@@ -144,7 +144,9 @@ impl Control<'_> {
                 let ratio = ratio.or_else(|| {
                     let [x, y, ..] = self.knobs.feed_accel_mm_s2;
                     let most = self.knobs.path_accel_mm_s2[0].min(x.max(y));
-                    to_decel.map(|accel| 1.0 - (accel / most).min(1.0))
+                    let asked = to_decel.map(|accel| 1.0 - (accel / most).min(1.0));
+                    // Versions from August 2025 on do not read it: the faster of both counts.
+                    asked.map(|asked| asked.min(self.cruise_ratio()))
                 });
                 if corner.is_some() || ratio.is_some() {
                     self.limit_corners(run, corner, ratio, span);
@@ -179,8 +181,10 @@ impl Control<'_> {
                 }
             }
             b"ACTIVATE_EXTRUDER" => {
-                // Another extruder has another place.
+                // Another extruder has another place, and begins with M221 S100.
                 self.position.unknown.insert(EXTRUDER);
+                self.printer.flow = self.printer.flow.max(1.0);
+                self.settle();
                 run.facts.boundary = true;
             }
             _ => return false,
@@ -206,6 +210,7 @@ impl Control<'_> {
             }
         }
         self.take_retract(run, retract, span);
+        self.printer.retracted = false;
     }
 }
 

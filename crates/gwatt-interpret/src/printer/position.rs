@@ -3,6 +3,8 @@
 use super::left_out::note_levelling;
 use super::line::Parameters;
 use crate::control::{Control, Run};
+use crate::facts::{OWN_MOVES, RUNS_A_FILE};
+use crate::knob::KnobState;
 use crate::places::EXTRUDER;
 use gwatt_machine::{AxisId, AxisSet};
 use gwatt_motion::ActionKind;
@@ -19,8 +21,36 @@ impl Control<'_> {
         );
         run.report.note_once("unknown-moves", &message, span);
         note_levelling_if(run, &name, span);
+        // Marlin's probing ends with moves that it waits for: from rest to rest, or none at all.
+        let printer = &self.machine.controller.language.printer;
+        let waits =
+            !printer.several_commands && !printer.velocity_limit && name.starts_with(['G', 'g']);
+        let rests = waits && self.printer.stands;
+        // RepRapFirmware runs files of the machine, which may set limits of their own and, as
+        // most do, set them back.
+        let runs_files = self.machine.controller.language.printer.several_commands;
+        let limits = runs_files.then(|| self.knobs.clone());
+        if runs_files {
+            self.limits_at_least(&KnobState::new(self.machine));
+        }
+        if runs_files {
+            run.facts.fixed.get_or_insert(RUNS_A_FILE);
+        } else {
+            run.facts.own_feed = Some(OWN_MOVES);
+        }
         self.at_full_speed(run, self.machine.axis_set);
-        run.act(ActionKind::MayStop, 0.0);
+        if let Some(limits) = limits {
+            self.take_corner(limits.corner);
+            self.knobs = limits;
+            self.settle();
+        }
+        self.printer.stands = rests;
+        let end = if rests {
+            ActionKind::Rest
+        } else {
+            ActionKind::MayStop
+        };
+        run.act(end, 0.0);
     }
 
     /// G28: each group of axes from an unknown place to its endstops.
@@ -68,7 +98,10 @@ impl Control<'_> {
                 run.report.note_once("home", message, span);
             }
         }
+        // Homing makes the machine coordinate known; how far the program's are from it is not.
+        self.position.unknown.0 |= named.0 & self.printer.shifted.0;
         self.home_moves(run, span);
+        self.printer.stands = true;
     }
 
     /// What homing moves besides the axes that it homes.
@@ -117,6 +150,7 @@ impl Control<'_> {
             named = self.machine.axis_set;
         }
         self.position.unknown.0 |= named.0;
+        self.printer.shifted.0 |= named.0;
     }
 
     /// T0 to T9: another tool than the one in use comes by unknown moves.

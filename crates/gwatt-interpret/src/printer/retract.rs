@@ -11,8 +11,9 @@ impl Control<'_> {
     /// G10 and G11: retract and recover; with other values G10 sets a tool or
     /// an offset.
     ///
-    /// Sources: Marlin G10, G11 (S1: a longer retract); Duet documentation G10
-    /// (P, R, S: temperatures; L2, L20 and axes: offsets).
+    /// Sources: Marlin G10, G11 (S1: a longer retract) and Klipper (`firmware_retraction.py`),
+    /// which retract whatever else is given; Duet documentation G10 (P, R, S: temperatures;
+    /// L2, L20 and axes: offsets).
     pub(super) fn retract_or_set(
         &mut self,
         run: &mut Run<'_, '_>,
@@ -20,9 +21,11 @@ impl Control<'_> {
         parameters: &Parameters,
         span: Span,
     ) {
-        let settings = parameters
-            .iter()
-            .any(|one| one.letter != b'S' || one.value.is_some_and(|value| value > 1.0));
+        let sets = self.machine.controller.language.printer.several_commands;
+        let settings = sets
+            && parameters
+                .iter()
+                .any(|one| one.letter != b'S' || one.value.is_some_and(|value| value > 1.0));
         if number == 110 {
             return self.recover(run, span);
         }
@@ -66,7 +69,7 @@ impl Control<'_> {
     }
 
     fn may_retract(&self, run: &mut Run<'_, '_>, span: Span) -> bool {
-        run.facts.fixed = Some("it retracts filament");
+        run.facts.own_feed = Some("it retracts filament");
         if self.machine.axes[EXTRUDER].is_none() {
             run.report
                 .error("no-such-axis", "the machine has no E axis", span)

@@ -37,7 +37,7 @@ impl Control<'_> {
         let factor = if spared { 1.0 } else { state.feed_factor };
         let feed = feed_mm_s * factor;
         if state.feed_factor != 1.0 {
-            run.facts.fixed = Some("M220 scales its feed");
+            run.facts.own_feed = Some("M220 scales its feed");
         }
         let extrudes = course.commanded.contains(EXTRUDER);
         feed.max(state.least_mm_s[usize::from(!extrudes)])
@@ -52,8 +52,20 @@ impl Control<'_> {
         }
         if course.unknown {
             // In whatever direction: no axis is faster than the largest of their limits.
-            let caps = course.commanded.iter().map(|axis| knobs.speed_mm_s[axis]);
-            return feed.min(caps.fold(0.0, f64::max));
+            let caps = || course.commanded.iter().map(|axis| knobs.speed_mm_s[axis]);
+            if caps().all(f64::is_infinite) {
+                return feed;
+            }
+            let speeds = course.commanded.iter().map(|axis| {
+                let own_mm_s = self.machine.axes[axis].map_or(f64::INFINITY, |it| it.rapid_mm_s);
+                let cap_mm_s = knobs.speed_mm_s[axis];
+                if cap_mm_s.is_finite() {
+                    cap_mm_s
+                } else {
+                    own_mm_s
+                }
+            });
+            return feed.min(speeds.fold(0.0, f64::max));
         }
         // Chords of an arc that run along one axis of its plane are as fast as the other permits.
         for axis in AxisSet(course.commanded.0 & !course.turning.0).iter() {

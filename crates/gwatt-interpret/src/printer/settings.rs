@@ -5,7 +5,7 @@ use crate::control::{Control, Run};
 use crate::knob::KnobState;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_machine::{AxisId, KnobArgument};
-use gwatt_motion::{ActionKind, Corner, Square};
+use gwatt_motion::{ActionKind, Corner};
 use gwatt_syntax::source::Span;
 
 /// Largest percentage that is taken for one.
@@ -31,7 +31,8 @@ impl Control<'_> {
 
     /// M220: percentage of all feeds; B puts it by, R takes it back.
     ///
-    /// Source: Marlin M220; Klipper and `RepRapFirmware` have S alone.
+    /// Source: Marlin M220; Klipper and `RepRapFirmware` have S alone, which is 100 on Klipper
+    /// where it is not given (`gcode_move.py`).
     pub(super) fn feed_percent(
         &mut self,
         run: &mut Run<'_, '_>,
@@ -44,7 +45,7 @@ impl Control<'_> {
         if super::line::has(parameters, b'R') {
             self.printer.feed_factor = self.printer.kept_feed_factor;
         }
-        if let Some(percent) = value(parameters, b'S') {
+        if let Some(percent) = self.percent(parameters) {
             if !(percent > 0.0 && percent <= PERCENT_MAX) {
                 return Self::bad_value(run, span, "write a percentage above 0");
             }
@@ -53,6 +54,12 @@ impl Control<'_> {
         run.facts.boundary = true;
         run.act(ActionKind::Other, 220.0);
         self.settle();
+    }
+
+    /// The percentage of M220 and M221.
+    fn percent(&self, parameters: &Parameters) -> Option<f64> {
+        let default = self.names_parameters().then_some(100.0);
+        value(parameters, b'S').or(default)
     }
 
     /// M221: percentage of all lengths of filament.
@@ -65,7 +72,7 @@ impl Control<'_> {
         span: Span,
     ) {
         let tool = value(parameters, b'T').or_else(|| value(parameters, b'D'));
-        if let Some(percent) = value(parameters, b'S') {
+        if let Some(percent) = self.percent(parameters) {
             if !(percent > 0.0 && percent <= PERCENT_MAX) {
                 return Self::bad_value(run, span, "write a percentage above 0");
             }
@@ -108,7 +115,8 @@ impl Control<'_> {
 
     /// M203: largest speed of each axis.
     ///
-    /// Source: Marlin M203 (units/s), `RepRapFirmware` M203 (mm/min, S1 mm/s).
+    /// Source: Marlin M203 (units/s), `RepRapFirmware` M203 (mm/min, S1 mm/s; I: the smallest
+    /// speed of any move).
     pub(super) fn speed_caps(
         &mut self,
         run: &mut Run<'_, '_>,
@@ -132,13 +140,16 @@ impl Control<'_> {
             }
             self.knobs.limit_axis_speed(self.machine, axis, cap);
         }
+        let has_least = self.machine.controller.language.printer.several_commands;
+        if has_least && let Some(least) = value(parameters, b'I').filter(|least| *least >= 0.0) {
+            self.printer.least_mm_s = [least * unit * self.modal.mm_per_unit; 2];
+        }
         self.knobs.set_in(self.machine, self.modal.mm_per_unit);
         run.facts.turns_knob = true;
         self.settle();
     }
 
-    /// M205 S and T: smallest speeds; the jerks that it sets too are not
-    /// counted, since corners are priced at full speed.
+    /// M205 S and T: smallest speeds.
     ///
     /// Source: Marlin M205.
     pub(super) fn least_speeds(&mut self, parameters: &Parameters) {
@@ -314,47 +325,10 @@ impl Control<'_> {
         self.settle();
     }
 
-    /// Klipper's look-ahead: the speed at a right angle, mm/s, and the share of each hill
-    /// that is cruised at least.
-    ///
-    /// Source: Klipper, "G-Codes", `SET_VELOCITY_LIMIT`; `ACCEL_TO_DECEL` of earlier
-    /// versions is `ACCEL` less the ratio (`toolhead.py`).
-    pub(super) fn limit_corners(
-        &mut self,
-        run: &mut Run<'_, '_>,
-        corner_mm_s: Option<f64>,
-        cruise_ratio: Option<f64>,
-        span: Span,
-    ) {
-        let Some(own) = Square::of(self.machine) else {
-            return;
-        };
-        let fine = corner_mm_s.is_none_or(|speed| (0.0..=1e7).contains(&speed))
-            && cruise_ratio.is_none_or(|ratio| (0.0..1.0).contains(&ratio));
-        if !fine {
-            let help = "write a corner velocity from 0 and a cruise ratio from 0 to below 1";
-            return Self::bad_value(run, span, help);
-        }
-        let before = self.knobs.square.unwrap_or(own);
-        let square = Square {
-            corner_mm_s: corner_mm_s.unwrap_or(before.corner_mm_s),
-            cruise_ratio: cruise_ratio.unwrap_or(before.cruise_ratio),
-        };
-        run.facts.turns_knob = true;
-        self.take_square((square != own).then_some(square));
-    }
-
-    pub(super) fn take_square(&mut self, square: Option<Square>) {
-        if self.knobs.square != square {
-            self.knobs.square = square;
-            self.modal.corner = square.map_or_else(Corner::default, Corner::Square);
-        }
-    }
-
     /// `RESET_VELOCITY_LIMIT`: the configured limits.
     pub(super) fn reset_velocity(&mut self, run: &mut Run<'_, '_>) {
         run.facts.turns_knob = true;
-        self.take_square(None);
+        self.take_corner(Corner::default());
         self.knobs = KnobState::new(self.machine);
         self.settle();
     }
@@ -365,7 +339,7 @@ impl Control<'_> {
     pub(super) fn restore_settings(&mut self, run: &mut Run<'_, '_>, span: Span) {
         run.facts.turns_knob = true;
         run.facts.boundary = true;
-        self.take_square(None);
+        self.take_corner(Corner::default());
         self.knobs = KnobState::new(self.machine);
         let state = &mut self.printer;
         state.least_mm_s = [0.0; 2];

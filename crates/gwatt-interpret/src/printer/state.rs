@@ -27,6 +27,8 @@ pub(crate) struct State {
     pub(super) flow: f64,
     /// Axes of a move that may not be in the queue yet.
     pub(crate) pending: AxisSet,
+    /// All axes stand, since nothing has moved after homing, or at all.
+    pub(crate) stands: bool,
     /// M200: length of filament for one unit of E.
     pub(super) volumetric: f64,
     /// M205 S and T: smallest speeds of moves that extrude, and of others.
@@ -48,6 +50,8 @@ pub(crate) struct State {
     pub(super) maybe_lit: u32,
     /// The program has named more than one tool.
     pub(super) several_tools: bool,
+    /// Axes whose program coordinates are shifted against the machine's by nobody knows how much.
+    pub(super) shifted: AxisSet,
     /// G60.
     pub(super) positions: Vec<(u32, SavedPosition)>,
     /// Before each part that is open and may be left out.
@@ -68,6 +72,7 @@ impl State {
             kept_feed_factor: 1.0,
             flow: 1.0,
             pending: AxisSet::default(),
+            stands: true,
             volumetric: 1.0,
             least_mm_s: [0.0; 2],
             retract: language.printer.retract,
@@ -80,6 +85,7 @@ impl State {
             lit: [0; 32],
             maybe_lit: 0,
             several_tools: false,
+            shifted: AxisSet::default(),
             positions: Vec::new(),
             optional: Vec::new(),
             states: BTreeMap::new(),

@@ -3,10 +3,10 @@
 use super::state::Unstated;
 use crate::code::Motion;
 use crate::control::{Control, Run};
+use crate::facts::SETS_UNKNOWN;
 use crate::knob::KnobState;
 use crate::places::EXTRUDER;
 use gwatt_machine::{ALL_AXES, ExtruderMode};
-use gwatt_motion::Square;
 use gwatt_syntax::source::Span;
 
 impl Control<'_> {
@@ -21,6 +21,8 @@ impl Control<'_> {
         self.limits_at_least(&KnobState::new(self.machine));
         self.may_heat(run, span);
         self.unknown_moves(run, span);
+        run.facts.own_feed = None;
+        run.facts.fixed = Some(SETS_UNKNOWN);
         self.modal.feed = None;
         self.modal.motion = Motion::None;
         self.printer.unstated = Unstated::of(true, true);
@@ -37,10 +39,7 @@ impl Control<'_> {
     /// Limits that are those in force or these: the higher ones count.
     pub(super) fn limits_at_least(&mut self, other: &KnobState) {
         self.knobs.raise_to(self.machine, other);
-        if let Some(own) = Square::of(self.machine) {
-            let [now, other] = [&self.knobs, other].map(|knobs| knobs.square.unwrap_or(own));
-            self.take_square(Some(now.or_faster(other)).filter(|square| *square != own));
-        }
+        self.corners_at_least(other.corner);
         self.settle();
     }
 

@@ -2,7 +2,7 @@
 
 use super::findings::Findings;
 use super::machine_file::{LimitsTable, MachineFile, PathTable};
-use super::value::{Num, Number, PerAxis};
+use super::value::{At, Num, Number, PerAxis};
 use super::{
     axis, converter, drive_curve, kinematics, levels, look_ahead, offsets, outputs, own_language,
     parts, path_accel, plausible, preset, response, servo, spindle, switched_load, tool,
@@ -11,6 +11,7 @@ use crate::MassPart;
 use crate::axis::{AXES, Axis, AxisId, AxisSet};
 use crate::controller::Controller;
 use crate::model::{ForcePoint, Limits, Load, Machine, Path};
+use crate::queue::LaserMode;
 use crate::response::Responses;
 use crate::units::SECONDS_PER_MINUTE;
 
@@ -33,6 +34,9 @@ pub(crate) fn machine(
         path.accel_mm_s2 = path_accel::take(findings, table, &controller);
         if let Some(time) = &table.shortest_at_feed_s {
             controller.planner.shortest_at_feed_s = time.value;
+        }
+        if let Some(on) = &table.laser_mode {
+            laser_mode(findings, on, &mut controller);
         }
     }
     if let Some(table) = &file.outputs {
@@ -178,6 +182,21 @@ fn path(table: Option<&PathTable>, controller: &Controller) -> Path {
         accel_mm_s2: [f64::INFINITY; 3],
         clearance_mm: clearance(table.and_then(|table| table.clearance.as_ref())),
     }
+}
+
+/// Whether the laser mode is on, where there is one.
+fn laser_mode(findings: &mut Findings<'_>, on: &At<bool>, controller: &mut Controller) {
+    let mode = &mut controller.queue.laser_mode;
+    if *mode == LaserMode::Off {
+        let message = format!("controller \"{}\" has no laser mode", controller.name);
+        let help = "leave `laser_mode` out; grbl has one".to_owned();
+        return findings.error("machine-word", &on.span, message, Some(help));
+    }
+    *mode = if on.value {
+        LaserMode::On
+    } else {
+        LaserMode::Off
+    };
 }
 
 /// Clearances by axis.

@@ -247,6 +247,10 @@ pub(crate) struct PlannerTable {
     pub(crate) passes: Option<Vec<At<String>>>,
     /// The same where such lines may be put together.
     pub(crate) joins: Option<Vec<At<String>>>,
+    /// Whether the control has a mode in which S in a block that moves acts with the motion and
+    /// stops nothing (grbl's $32), which `[path] laser_mode` of the machine file switches;
+    /// default false.
+    pub(crate) has_laser_mode: Option<bool>,
     /// What waits for the spindle's speed; default: not known, so that both
     /// cases are counted.
     pub(crate) spindle_wait: Option<SpindleWait>,

@@ -158,6 +158,9 @@ pub(crate) struct PathTable {
     /// Printers: accelerations along the path in mm/s² when a program begins, as M204 sets
     /// them; default: none but those of the axes.
     pub(crate) accel_mm_s2: Option<At<PathAccelTable>>,
+    /// Whether the laser mode of a control that has one is on (grbl: $32): S in a block that moves
+    /// stops nothing then; default: not known, so that both cases are counted.
+    pub(crate) laser_mode: Option<At<bool>>,
     /// The shortest time in s that the path of a block may take at its F for the control to
     /// keep that (Marlin: M205 B); default: as in the controller profile.
     pub(crate) shortest_at_feed_s: Option<NotNegative>,

@@ -18,7 +18,7 @@ use crate::controller::{
     PowerOnMotion, RapidJoint, RapidKnob, RapidPath, SpindleWait,
 };
 use crate::knob::{Knob, KnobArgument, KnobTarget, KnobUnit};
-use crate::queue::{MESSAGE, MESSAGES, Queue, QueueEffect, QueueWord};
+use crate::queue::{LaserMode, MESSAGE, MESSAGES, Queue, QueueEffect, QueueWord};
 use crate::units::SECONDS_PER_MINUTE;
 
 /// Makes a controller; all mistakes go to the findings, and with any of them
@@ -221,6 +221,11 @@ fn queue(findings: &mut Findings<'_>, table: &PlannerTable) -> Queue {
         passes: list(&table.passes, QueueEffect::Pass),
         joins: list(&table.joins, QueueEffect::Join),
         names,
+        laser_mode: if table.has_laser_mode == Some(true) {
+            LaserMode::Unknown
+        } else {
+            LaserMode::Off
+        },
     }
 }
 

@@ -80,7 +80,8 @@ impl Before {
             return None;
         };
         let span = self.span.max(after.span);
-        (self.joint != Joint::Stop).then(|| jerk(step_mm_s, self, after, span))
+        let steps = after.element.set.steps_mm_s(step_mm_s);
+        (self.joint != Joint::Stop).then(|| jerk(steps, self, after, span))
     }
 
     /// Whether the element is straight, as long as its part in X, Y and Z, and runs
@@ -114,7 +115,8 @@ impl<'e, T> After<'e, T> {
         let span = span(&element.start);
         let rest2 = match rule {
             CornerRule::ClassicJerk { step_mm_s } => {
-                rest2(step_mm_s, &element.start, span, top_mm_s)
+                let steps = element.set.steps_mm_s(step_mm_s);
+                rest2(steps, &element.start, span, top_mm_s)
             }
             _ => 0.0,
         };
@@ -124,8 +126,7 @@ impl<'e, T> After<'e, T> {
         };
         let square2 = match rule {
             CornerRule::SquareCorner { velocity_mm_s, .. } => {
-                let own = element.square.map(|square| square.corner_mm_s);
-                let v90 = own.unwrap_or(*velocity_mm_s);
+                let v90 = element.set.square_mm_s(*velocity_mm_s);
                 accel_share(element.accel_mm_s2, element.common_accel_mm_s2()) * v90 * v90
             }
             _ => 0.0,
@@ -195,6 +196,7 @@ pub(super) fn speed2<T>(
     most2: f64,
 ) -> f64 {
     let span = before.span.max(after.span);
+    let set = &after.element.set;
     let v2 = match rule {
         CornerRule::LinuxCnc { .. } => 0.0,
         CornerRule::JunctionDeviation {
@@ -205,7 +207,7 @@ pub(super) fn speed2<T>(
             small_block_mm,
         } => {
             let corner = Corner {
-                deviation_mm: *deviation_mm,
+                deviation_mm: set.deviation_mm(*deviation_mm),
                 per_axis: *per_axis,
                 block_accel: *block_accel || !*per_axis,
                 small_block_mm: *small_block_mm,
@@ -223,14 +225,25 @@ pub(super) fn speed2<T>(
                 corner.speed2()
             }
         }
-        CornerRule::ClassicJerk { step_mm_s } => jerk(step_mm_s, before, after, span).speed2(),
+        CornerRule::ClassicJerk { step_mm_s } => {
+            jerk(set.steps_mm_s(step_mm_s), before, after, span).speed2()
+        }
         CornerRule::SquareCorner {
             extruder_step_mm_s, ..
         } => square(*extruder_step_mm_s, before, after),
         CornerRule::SpeedStep {
             step_mm_s,
             same_kind_only,
-        } => step(step_mm_s, *same_kind_only, before, after, span),
+        } => {
+            let same_kind_only = set.same_kind_only(*same_kind_only);
+            step(
+                set.steps_mm_s(step_mm_s),
+                same_kind_only,
+                before,
+                after,
+                span,
+            )
+        }
     };
     v2.min(most2)
 }

@@ -9,7 +9,7 @@ use super::super::drive::{self, Heading};
 use super::super::limits::{self};
 use super::super::overrides::{Caps, Overrides};
 use super::super::path_limits::PathLimits;
-use gwatt_machine::{AXES, AxisValues, Machine};
+use gwatt_machine::{AXES, AxisValues, CornerRule, Machine};
 use gwatt_motion::{Arc, Corner, Move, MoveKind, Square};
 
 /// What happens at the end of an element, if the controller's rules permit it.
@@ -49,6 +49,82 @@ pub struct Curve {
     pub axes_mm_s: [f64; 2],
     /// Speed along the path that the axes across the plane permit, mm/s.
     pub across_mm_s: f64,
+}
+
+/// What the program has set in place of the profile's values of its rule for corners.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum CornerSet {
+    /// Nothing.
+    #[default]
+    None,
+    /// The speed at a right angle, and the share of hills to cruise.
+    Square(Square),
+    /// The largest steps of speed of the axes, mm/s, and whether they hold only between two
+    /// moves that extrude or two that do not.
+    Steps(AxisValues, bool),
+    /// The distance of a circle from the corner, mm.
+    Deviation(f64),
+}
+
+impl CornerSet {
+    #[inline]
+    fn of(machine: &Machine, corner: Corner) -> Self {
+        match corner {
+            Corner::Exact | Corner::Round { .. } => Self::None,
+            Corner::Square(square) => Self::Square(square),
+            Corner::Deviation(deviation_mm) => Self::Deviation(deviation_mm),
+            Corner::Steps(steps) => {
+                let rules = machine.controller.planner.look_ahead;
+                match rules.map(|rules| rules.corner) {
+                    Some(
+                        CornerRule::ClassicJerk { step_mm_s }
+                        | CornerRule::SpeedStep { step_mm_s, .. },
+                    ) => Self::Steps(steps.over(&step_mm_s), steps.same_kind_only),
+                    _ => Self::None,
+                }
+            }
+        }
+    }
+
+    /// The share of each hill of speed that is cruised at least; `own`: the profile's.
+    pub(super) fn cruise_ratio(&self, own: f64) -> f64 {
+        match self {
+            Self::Square(square) => square.cruise_ratio,
+            _ => own,
+        }
+    }
+
+    /// The speed at a right angle, mm/s.
+    pub(super) fn square_mm_s(&self, own: f64) -> f64 {
+        match self {
+            Self::Square(square) => square.corner_mm_s,
+            _ => own,
+        }
+    }
+
+    /// The steps of speed, mm/s.
+    pub(super) fn steps_mm_s<'a>(&'a self, own: &'a AxisValues) -> &'a AxisValues {
+        match self {
+            Self::Steps(steps, _) => steps,
+            _ => own,
+        }
+    }
+
+    /// Whether steps hold between moves of one kind alone.
+    pub(super) fn same_kind_only(&self, own: bool) -> bool {
+        match self {
+            Self::Steps(_, same_kind_only) => *same_kind_only,
+            _ => own,
+        }
+    }
+
+    /// The distance of the circle, mm.
+    pub(super) fn deviation_mm(&self, own: f64) -> f64 {
+        match self {
+            Self::Deviation(deviation_mm) => *deviation_mm,
+            _ => own,
+        }
+    }
 }
 
 /// A path element.
@@ -94,7 +170,7 @@ pub struct Element<T> {
     /// The curvature of an arc.
     pub curve: Option<Curve>,
     /// What the program has set for corners and hills.
-    pub square: Option<Square>,
+    pub set: CornerSet,
     /// What happens at its end.
     pub joint: Joint,
 }
@@ -135,7 +211,7 @@ impl<T> Element<T> {
             start: [0.0; AXES],
             end: [0.0; AXES],
             curve: None,
-            square: None,
+            set: CornerSet::None,
             joint: Joint::Stop,
         }
     }
@@ -176,10 +252,7 @@ impl<T> Element<T> {
         }
         self.end = self.start;
         self.curve = None;
-        self.square = match mv.corner {
-            Corner::Square(square) => Some(square),
-            _ => None,
-        };
+        self.set = CornerSet::of(machine, mv.corner);
         self.joint = joint;
         let caps = Caps::default();
         let limits = match &mv.arc {

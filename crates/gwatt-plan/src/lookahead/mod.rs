@@ -24,7 +24,7 @@ mod window;
 mod node;
 
 pub use chord::chord_count;
-pub use element::{Curve, Element, Joint, common_accel};
+pub use element::{CornerSet, Curve, Element, Joint, common_accel};
 pub use glide::Gliding;
 pub use line::Line;
 pub use linuxcnc::LATE_CYCLES;

@@ -195,7 +195,7 @@ impl<T: Copy> PathPlanner<T> {
         let mut node = Node::new(element.length_mm, top2, element.accel_mm_s2, 0.0, load);
         if smooths(&self.look_ahead) {
             let ratio = self.look_ahead.min_cruise_ratio;
-            let share = 1.0 - element.square.map_or(ratio, |square| square.cruise_ratio);
+            let share = 1.0 - element.set.cruise_ratio(ratio);
             node.smooth_accel = element.common_accel_mm_s2() * share;
         }
         node.step2 = after.rest2;

@@ -160,12 +160,18 @@ impl Ahead {
             return None;
         }
         let found = is_own.then_some(&open.assessment.demand);
-        let mut demand = shifted_demand(model, &open.mv, planned, how, found);
+        let mut demand = shifted_demand(model, &open.mv, planned, how, (open.want, found));
         if model.has_copper(&open.mv)
             && let Some(surges) = self.surges.as_mut()
         {
             let lossless = surges.lossless(model);
-            demand.include(&shifted_demand(lossless, &open.mv, planned, how, found));
+            demand.include(&shifted_demand(
+                lossless,
+                &open.mv,
+                planned,
+                how,
+                (open.want, found),
+            ));
         }
         Some(demand)
     }

@@ -129,9 +129,11 @@ pub fn joint(mv: &Move) -> Joint {
             tolerance_mm,
             join_mm,
         },
-        (PathMode::LookAhead, Corner::Square(_)) => Joint::Blend {
-            tolerance_mm: 0.0,
-            join_mm: 0.0,
-        },
+        (PathMode::LookAhead, Corner::Square(_) | Corner::Steps(_) | Corner::Deviation(_)) => {
+            Joint::Blend {
+                tolerance_mm: 0.0,
+                join_mm: 0.0,
+            }
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Which moves may glide, and what they are to the planner.
 
 use gwatt_machine::{AXES, AxisId, AxisSet, AxisValues, CornerRule, LookAhead, Machine, PathMode};
-use gwatt_motion::{Corner, Move, MoveKind};
+use gwatt_motion::{Move, MoveKind};
 use gwatt_plan::lookahead::{Line, common_accel};
 
 const LINEAR: usize = 3;
@@ -70,7 +70,7 @@ impl Terms {
             && !mv.stray.strays()
             && mv.path_mode == PathMode::LookAhead
             // What the program has set is left to the planner.
-            && !matches!(mv.corner, Corner::Square(_))
+            && !mv.corner.is_set()
     }
 
     /// Describes a move that suits, and a joint before it at which these axes move, in
