@@ -14,6 +14,7 @@ pub(super) mod code;
 pub(super) mod codes;
 mod cursor;
 mod cycle;
+mod cycle_arguments;
 mod cycle_call;
 mod cycle_moves;
 mod definition;
