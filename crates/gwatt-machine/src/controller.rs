@@ -120,6 +120,10 @@ pub struct Language {
     pub arc_without_center: ArcWithoutCenter,
     /// Speed at which a tap is retracted, as a multiple of its feed; `None`: not known, counted as 1.
     pub tap_return_factor: Option<f64>,
+    /// What F of G74 and G84 of a mill is.
+    pub tap_feed: TapFeed,
+    /// D and H in a block of a canned cycle are words of the cycle, not offsets of tools.
+    pub cycles_take_d_and_h: bool,
     /// G53 moves at rapid speed whatever the motion word.
     pub moves_in_machine_at_rapid: bool,
     /// How far the radii of an arc at its start and end may always differ, mm: in a
@@ -265,6 +269,18 @@ pub enum ArcWithoutCenter {
 
 /// How the tool goes after a pass of G71 and G72 whose contour begins with both axes (type II)
 /// and has no pocket.
+/// What F of a tap is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TapFeed {
+    /// A feed as any other: per minute under G94.
+    PerMinute,
+    /// The way in one turn of the spindle, whatever the feed mode.
+    Pitch,
+    /// One of them, as a parameter of the control says: the faster counts.
+    Unknown,
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum TypeTwo {

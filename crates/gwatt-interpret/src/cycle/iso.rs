@@ -36,6 +36,9 @@ impl Control<'_> {
         }
         let initial_mm = self.initial_level(normal, begins);
         self.special.active = number;
+        if !self.d_and_h(number, run) {
+            return;
+        }
         let Some(repeats) = self.iso_repeats(number, run) else {
             return;
         };
