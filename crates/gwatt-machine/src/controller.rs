@@ -190,6 +190,8 @@ pub struct Dialect {
     pub per_revolution: bool,
     /// G12 and G13 mill circular pockets.
     pub circular_pocket: bool,
+    /// G81 to G89 of a lathe all drill along Z, from the place R.
+    pub holes_along_z: bool,
     /// G28 without axes moves all of them.
     pub g28_all: bool,
     /// The word of M98 that names the block to begin at, such as `Q`.
@@ -267,8 +269,6 @@ pub enum ArcWithoutCenter {
     LineOrAlarm,
 }
 
-/// How the tool goes after a pass of G71 and G72 whose contour begins with both axes (type II)
-/// and has no pocket.
 /// What F of a tap is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -281,6 +281,8 @@ pub enum TapFeed {
     Unknown,
 }
 
+/// How the tool goes after a pass of G71 and G72 whose contour begins with both axes (type II)
+/// and has no pocket.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum TypeTwo {

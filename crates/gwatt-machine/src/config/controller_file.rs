@@ -151,6 +151,9 @@ pub(crate) struct LanguageTable {
     pub(crate) tool_change_moves: Option<Vec<At<String>>>,
     /// G12 and G13 mill circular pockets, as on a Haas; default false.
     pub(crate) circular_pocket: Option<bool>,
+    /// Whether G81 to G89 of a lathe all drill along Z, from the place R, as on a Haas; default
+    /// false: G83 to G85 along Z and G87 to G89 along X, R being a distance.
+    pub(crate) holes_along_z: Option<bool>,
     /// Whether G28 without axes moves all of them; default false.
     pub(crate) g28_all: Option<bool>,
     /// The word of M98 that names the block to begin at, of the program that is called, or

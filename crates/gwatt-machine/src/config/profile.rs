@@ -156,6 +156,7 @@ fn dialect(table: &LanguageTable) -> Dialect {
         semicolon_ends_block: table.semicolon_ends_block.unwrap_or(false),
         per_revolution: table.feed == Some(FeedName::PerRevolution),
         circular_pocket: table.circular_pocket.unwrap_or(false),
+        holes_along_z: table.holes_along_z.unwrap_or(false),
         g28_all: table.g28_all.unwrap_or(false),
         call_block: table.call_block.map(|name| match name {
             CallBlockName::Q => b'Q',
