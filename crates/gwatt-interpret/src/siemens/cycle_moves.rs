@@ -219,10 +219,11 @@ impl Control<'_> {
                 .find(|(known, _)| (*known - size).abs() < 1e-9)?;
             Some(found.1)
         });
+        let unit = call.value(if rigid { 14 } else { 13 });
         let pitch = call.value(pitch).map(f64::abs).filter(|pitch| *pitch > 0.0);
-        let speed = |place| call.value(place).map(f64::abs).filter(|speed| *speed > 0.0);
         let pitch_mm = pitch.map(|pitch| self.pitch_mm(pitch, unit.unwrap_or(0.0)));
-        let spindle = Some(self.modal.spindle_rpm).filter(|rpm| *rpm > 0.0);
+        let speed = |place| call.value(place).map(f64::abs).filter(|speed| *speed > 0.0);
+        let spindle = Some(self.followed_rpm()).filter(|rpm| *rpm > 0.0);
         let speed_in = if rigid { speed(11) } else { None }.or(spindle);
         let speed_out = if rigid { speed(12) } else { None }.or(speed_in);
         let (Some(pitch_mm), Some(speed_in), Some(speed_out)) =

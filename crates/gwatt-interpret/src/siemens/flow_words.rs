@@ -310,7 +310,7 @@ impl Reading<'_, '_, '_> {
         let arguments = self.arguments()?;
         if let Some(kind) = cycle_call::Kind::named(name) {
             let mut values = Vec::new();
-            for argument in arguments {
+            for (argument, place) in arguments.into_iter().zip(1..) {
                 values.push(match argument {
                     Some(argument) if says_nothing(kind, place, &argument.value) => None,
                     Some(argument) => Some(self.number_of(&argument.value, start)?),

@@ -77,7 +77,6 @@ const DATA: &[&str] = &[
     "CUT2DF",
     "CUT3DC",
     "CUT3DF",
-    "SETMS",
     // Start angle, run-in and run-out of threads.
     "SF",
     "DITS",
@@ -177,6 +176,7 @@ const REFUSED: &[(&str, &str)] = &[
     ("OFFN", "a contour offset"),
     ("ANG", "an angle of a contour"),
     ("ANG1", "an angle of a contour"),
+    ("ANG2", "an angle of a contour"),
     ("SVC", "a cutting speed that sets the speed of the spindle"),
     ("FAD", "a feed of a smooth approach"),
     ("DISCL", "a distance of a smooth approach"),
@@ -186,7 +186,6 @@ const REFUSED: &[(&str, &str)] = &[
     ("ALF", "a direction of a fast retraction"),
     ("SD", "the degree of a spline"),
     ("PW", "the weight of a point of a spline"),
-    ("ANG2", "an angle of a contour"),
     ("FLIN", "a feed that changes in the block"),
     ("FCUB", "a feed that changes in the block"),
     ("FB", "a feed of one block"),
