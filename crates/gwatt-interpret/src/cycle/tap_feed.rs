@@ -22,35 +22,35 @@ impl Control<'_> {
         cycle && drills && self.machine.controller.language.cycles_take_d_and_h
     }
 
-    /// Takes D and H, where they are words of the cycle; false where they are not followed.
-    pub(super) fn d_and_h(&mut self, number: u16, run: &mut Run<'_, '_>) -> bool {
+    /// Takes D and H, where they are words of the cycle; `None` where they are not followed.
+    pub(super) fn d_and_h(&mut self, number: u16, run: &mut Run<'_, '_>) -> Option<()> {
         if !self.machine.controller.language.cycles_take_d_and_h {
-            return true;
+            return Some(());
         }
         if run.words.take(b'D').is_some_and(|distance| distance != 0.0) {
             run.cycle_value(
                 b'D',
                 "D of a canned cycle, a distance from R, is not followed",
             );
-            return false;
+            return None;
         }
         let Some(h) = run.words.take(b'H') else {
-            return true;
+            return Some(());
         };
         if !is_tap(number) {
             run.cycle_value(
                 b'H',
                 "H of a canned cycle that does not tap is not followed",
             );
-            return false;
+            return None;
         }
         if h != 0.0 && !(1.0..=9999.0).contains(&h) {
             let message = "H of a tap is 0, or the speed of the return in percent, from 1 on";
             run.cycle_value(b'H', message);
-            return false;
+            return None;
         }
         self.special.held.tap_h = Some(h);
-        true
+        Some(())
     }
 
     /// The return of a synchronous tap as H gives it, as a multiple of its feed.

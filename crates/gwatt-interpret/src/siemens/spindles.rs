@@ -78,7 +78,7 @@ impl Control<'_> {
             // Revolutions to wait for.
             said.speeds.clear();
         }
-        self.speed_limits(state, &mut said, run);
+        Self::speed_limits(state, &mut said, run);
         let first = said.speeds.iter().any(|(number, _)| *number == FIRST);
         let word = run.words.word(b'S', run.block);
         let speed = word.filter(|_| run.words.unused & bit(b'S') != 0);
@@ -96,7 +96,7 @@ impl Control<'_> {
 
     /// "Programmable spindle speed limitation (G25, G26)": S is a limit there. That of G25 may
     /// raise a speed; one that G26 lowers counts as it is programmed.
-    fn speed_limits(&self, state: &mut Siemens, said: &mut Said, run: &mut Run<'_, '_>) {
+    fn speed_limits(state: &mut Siemens, said: &mut Said, run: &mut Run<'_, '_>) {
         let limits = |(code, number, _): &(GCode, u16, _)| {
             (*code == GCode::Siemens(Code::Limits)).then_some(*number)
         };
