@@ -4,6 +4,7 @@
 
 mod fanuc;
 mod refusals;
+mod taps;
 
 use std::fmt::Write as _;
 use std::io::Cursor;

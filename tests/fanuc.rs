@@ -38,6 +38,20 @@ fn moves_on(machine: &Machine, program: &str) -> String {
 
 /// Rules of the notes on a program.
 pub fn notes(controller: &str, program: &str) -> Vec<&'static str> {
+    let all = noted(controller, program);
+    all.into_iter().map(|note| note.rule).collect()
+}
+
+/// The notes on a program that a parameter of the control is not known.
+pub fn messages(controller: &str, program: &str) -> Vec<String> {
+    let all = noted(controller, program).into_iter();
+    let parameters = all.filter(|note| {
+        note.message.contains("tap_feed") || note.message.contains("pecks_return_to_r")
+    });
+    parameters.map(|note| note.message).collect()
+}
+
+fn noted(controller: &str, program: &str) -> Vec<gwatt::diagnostic::Diagnostic> {
     let machine = machine(controller, "");
     pipeline::moves(
         Cursor::new(program),
@@ -46,9 +60,6 @@ pub fn notes(controller: &str, program: &str) -> Vec<&'static str> {
         &mut |_, _| Ok(()),
     )
     .unwrap_or_default()
-    .into_iter()
-    .map(|note| note.rule)
-    .collect()
 }
 
 /// B-64304EN, "Preparatory Function": of several G codes of one group in a block the last is
@@ -333,6 +344,10 @@ fn what_is_refused_by_name() {
             "G29 is a return from or a check of the reference point",
         ),
         ("G60", "G60 is positioning from one side"),
+        (
+            "G5 P10001 L2",
+            "G5 with this P runs a high-speed cycle that the control keeps, which moves axes in ways that the program does not say",
+        ),
         ("M96", "M96 is a jump or an interrupt by an input"),
         ("M109", "M109 is a value that the operator types"),
     ];

@@ -134,6 +134,8 @@ fn controller() -> Controller {
             type_2: None,
             arc_without_center: gwatt::machine::ArcWithoutCenter::Refused,
             tap_return_factor: None,
+            tap_feed: gwatt::machine::TapFeed::PerMinute,
+            cycles_take_d_and_h: false,
             moves_in_machine_at_rapid: false,
             arc_tolerance_mm: None,
             kept_variables: Vec::new(),

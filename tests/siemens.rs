@@ -6,6 +6,7 @@ mod cycles;
 mod flow;
 mod limits;
 mod refusals;
+mod spindles;
 
 use std::fmt::Write as _;
 use std::io::Cursor;
@@ -458,6 +459,15 @@ fn diam90_halves_places_and_no_increments() {
     3 arc X7.7976 Z37.6614 center 36.096,8.7541 turns 0.171 F100
     4 arc X7.7976 Z37.6614 center 36.096,8.7542 turns 1 F100
     ");
+    // "Circular interpolation with intermediate point and end point (CIP)": 93.33 / 2 - 20.
+    let start = "G18 G90 DIAMON F100\nG0 X40 Z-25\nCIP X70 Z-75";
+    let through = moves(&format!("{start} I1=93.33 K1=-54.25\n"));
+    assert_snapshot!(through, @r"
+    2 rapid X20 Z-25
+    3 arc X35 Z-75 center -52.4809,19.2303 turns 0.3983 F100
+    ");
+    let twin = moves(&format!("{start} I1=IC(26.665) K1=IC(-29.25)\n"));
+    assert_eq!(through, twin);
     let read = values("DIAM90 X50\nR1=$AA_IW[X]\nG91\nR2=$AA_IW[X]\nDIAMOF G90 X=R1+R2\n");
     assert_eq!(read, [25.0, 100.0]);
 }

@@ -366,38 +366,6 @@ fn a_thread_in_many_passes() {
     assert!(one.contains("3 thread Z-20.0000 F1200.0000\n3 rapid X15.0000\n3 rapid Z5.0000\n"));
 }
 
-/// B-63604EN, "Canned Cycle for Drilling (G80 to G89)".
-#[test]
-fn drilling_along_z_and_x() {
-    let program = "G97 S500 M3\nG0 X0 Z10.\nG83 Z-10. R-8. Q8000 F0.1 P200\nG80 G0 X50. C0\nG98 G87 X30. R-2. F100. C90.\nG80 G99\nG85 Z-5. R-8. F0.2\nG84 Z-6. R-8. F1.5\n";
-    assert_snapshot!(moves("fanuc-lathe", program), @r"
-2 rapid Z10.0000
-3 rapid
-3 rapid Z2.0000
-3 feed Z-6.0000 F50.0000
-3 rapid Z2.0000
-3 rapid Z-5.0000
-3 feed Z-10.0000 F50.0000
-3 dwell 0.2 s
-3 rapid Z10.0000
-4 rapid X25.0000
-5 rapid C90.0000
-5 rapid X23.0000
-5 feed X15.0000 F100.0000
-5 rapid X25.0000
-7 rapid
-7 rapid Z2.0000
-7 feed Z-5.0000 F100.0000
-7 feed Z2.0000 F200.0000
-7 rapid Z10.0000
-8 rapid
-8 rapid Z2.0000
-8 tap Z-6.0000 F750.0000
-8 tap Z2.0000 F750.0000
-8 rapid Z10.0000
-");
-}
-
 #[test]
 fn what_turning_cycles_refuse() {
     let cases = [

@@ -13,7 +13,10 @@ impl Singles<'_> {
     /// Whether a word of a cycle holds until the cycle ends.
     #[must_use]
     pub fn holds(&self, letter: u8) -> bool {
-        b"ZRQPIJ".contains(&letter) || letter == b'K' && self.language.pecks_by_ijk
+        let language = self.language;
+        b"ZRQPIJ".contains(&letter)
+            || letter == b'K' && language.pecks_by_ijk
+            || letter == b'H' && language.cycles_take_d_and_h
     }
 
     /// Whether a block has its cycle repeated.

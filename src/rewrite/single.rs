@@ -144,7 +144,9 @@ impl<'m> Singles<'m> {
     /// Whether the moves of a cycle may stand as single blocks.
     fn may_write_out(&self, number: u16) -> Result<(), &'static str> {
         let lathe = self.language.dialect.lathe.is_some();
+        let by_hand = self.language.dialect.holes_along_z && matches!(number, 870 | 880);
         match number {
+            _ if by_hand => Err("it stops the spindle, or waits for the operator"),
             _ if lathe && (LATHE.contains(&number) || ACROSS.contains(&number)) => Ok(()),
             _ if PLAIN.contains(&number) || TURNING.contains(&number) => Ok(()),
             740 | 840..=849 => Err("it taps"),

@@ -58,6 +58,54 @@ CYCLE86(20,10,2,-5,,1,3,-1,0,0.5)
 ");
 }
 
+/// "Programming cycles externally": _PITA 1 is mm, 2 threads per inch, 3 inch; 0 the unit of the
+/// program. Texts of screens, and values that are as without, change nothing.
+#[test]
+fn the_unit_of_a_pitch() {
+    let program = "\
+G0 X5 Z50 S1000 M3
+CYCLE84(20,10,2,5,,,3,,0.25,,1000,1000,0,1)
+CYCLE84(20,10,2,5,,,3,,20,,1000,1000,3,2,1000,0,5,1,,\"UNC\",\"\",0,1,1001002)
+CYCLE84(20,10,2,5,,,3,,0.25,,1000,1000,0,3)
+CYCLE840(20,10,2,5,,,4,3,11,,0.1,0,3,0,\"\")
+";
+    // 250; 25.4 / 20 = 1.27 mm; 6.35 mm; 2.54 mm.
+    assert_snapshot!(moves(program), @r"
+    1 rapid X5 Z50
+    2 rapid Z12
+    2 tap Z5 F250
+    2 tap Z12 F250
+    2 rapid Z20
+    3 rapid Z12
+    3 tap Z5 F1270
+    3 tap Z12 F1270
+    3 rapid Z20
+    4 rapid Z12
+    4 tap Z5 F6350
+    4 tap Z12 F6350
+    4 rapid Z20
+    5 rapid Z12
+    5 tap Z5 F2540
+    5 tap Z12 F2540
+    5 rapid Z20
+    ");
+}
+
+/// "HOLES2": _VARI 1000 is the whole circle, which 4 steps of 90 degrees are too.
+#[test]
+fn divisions_of_a_circle_that_agree() {
+    let program = "G0 X20 Z10 F100\nHOLES2(0,0,20,0,90,4,1000,0,,,1)\nHOLES2(0,0,20,0,30,2,2000)\n";
+    assert_snapshot!(moves(program), @r"
+    1 rapid X20 Z10
+    2 rapid
+    2 rapid X0 Y20
+    2 rapid X-20 Y0
+    2 rapid X0 Y-20
+    3 rapid X20 Y0
+    3 rapid X17.3205 Y10
+    ");
+}
+
 /// "Deep-hole drilling (CYCLE83)": 20 deep, first 10, each stroke 4 shorter.
 #[test]
 fn deep_holes_in_strokes() {

@@ -316,6 +316,110 @@ fn refusals_name_the_construct() {
             "1 cycle: a pattern of fewer than 1 or more than 10000 holes",
         ),
         (
+            "CYCLE84(10,0,1,-5,,,3,,1,,500,500,1)",
+            "1 cycle: argument 13 of the cycle (_AXN) has a value that is not followed",
+        ),
+        (
+            "CYCLE84(10,0,1,-5,,,3,,1,,500,500,,4)",
+            "1 cycle: argument 14 of the cycle (_PITA) has a value that is not followed",
+        ),
+        (
+            "CYCLE84(10,0,1,-5,,,3,,1,,500,500,,,20)",
+            "1 cycle: argument 15 of the cycle (_TECHNO) has a value that is not followed",
+        ),
+        (
+            "CYCLE84(10,0,1,-5,,,3,,1,,500,500,,,,2,5,1)",
+            "1 cycle: argument 16 of the cycle (_VARI) has a value that is not followed",
+        ),
+        (
+            "CYCLE84(10,0,1,-5,,,3,,1,,500,500,,,,,,,,,,,,1)",
+            "1 cycle: argument 24 of the cycle (_AMODE) has a value that is not followed",
+        ),
+        (
+            "CYCLE840(10,0,1,-5,,,4,3,1,,1)",
+            "1 cycle: argument 9 of the cycle (ENC) has a value that is not followed",
+        ),
+        (
+            "CYCLE840(10,0,1,-5,,,4,3,0,,1,2)",
+            "1 cycle: argument 12 of the cycle (_AXN) has a value that is not followed",
+        ),
+        (
+            "CYCLE86(10,0,1,-5,,,3,1,1,1,0,12)",
+            "1 cycle: argument 12 of the cycle (_GMODE) has a value that is not followed",
+        ),
+        (
+            "CYCLE85(10,0,1,-5,,,1,1,,3)",
+            "1 cycle: argument 10 of the cycle (_DMODE) has a value that is not followed",
+        ),
+        (
+            "CYCLE82(10,0,1,,5,,,,2)",
+            "1 cycle: argument 9 of the cycle (_AMODE) has a value that is not followed",
+        ),
+        (
+            "CYCLE83(10,0,1,-5,,-3,,,,,,,,,,1)",
+            "1 cycle: argument 16 of the cycle (_DTD) has a value that is not followed",
+        ),
+        (
+            "HOLES1(0,0,0,0,1,2,1)",
+            "1 cycle: argument 7 of the cycle (_VARI) has a value that is not followed",
+        ),
+        (
+            "HOLES1(0,0,0,0,1,2,,1)",
+            "1 cycle: argument 8 of the cycle (_UMODE) has a value that is not followed",
+        ),
+        (
+            "HOLES2(0,0,20,0,30,4,1000)",
+            "1 cycle: argument 7 of the cycle (_VARI) has a value that is not followed",
+        ),
+        (
+            "HOLES2(0,0,20,0,30,4,,,1)",
+            "1 cycle: argument 9 of the cycle (_HIDE) has a value that is not followed",
+        ),
+        (
+            "HOLES2(0,0,20,0,30,4,,,,1)",
+            "1 cycle: argument 10 of the cycle (_NSP) has a value that is not followed",
+        ),
+        (
+            "HOLES2(0,0,20,0,30,4,,,,,,1)",
+            "1 cycle: argument 12 of the cycle has a value that is not followed",
+        ),
+        (
+            "SVC=3",
+            "1 unsupported-word: SVC is a cutting speed that sets the speed of the spindle, which gwatt does not follow",
+        ),
+        (
+            "FAD=3",
+            "1 unsupported-word: FAD is a feed of a smooth approach, which gwatt does not follow",
+        ),
+        (
+            "DISCL=3",
+            "1 unsupported-word: DISCL is a distance of a smooth approach, which gwatt does not follow",
+        ),
+        (
+            "DISR=3",
+            "1 unsupported-word: DISR is a distance of a smooth approach, which gwatt does not follow",
+        ),
+        (
+            "ISD=3",
+            "1 unsupported-word: ISD is an insertion depth of a tool, which gwatt does not follow",
+        ),
+        (
+            "SR=3",
+            "1 unsupported-word: SR is a retraction of another feed, which gwatt does not follow",
+        ),
+        (
+            "ALF=3",
+            "1 unsupported-word: ALF is a direction of a fast retraction, which gwatt does not follow",
+        ),
+        (
+            "SD=3",
+            "1 unsupported-word: SD is the degree of a spline, which gwatt does not follow",
+        ),
+        (
+            "PW=3",
+            "1 unsupported-word: PW is the weight of a point of a spline, which gwatt does not follow",
+        ),
+        (
             "MCALL HOLES1(0,0,0,0,1,2)\nHOLES2(0,0,10,0,0,3)",
             "2 cycle: a pattern of patterns of holes",
         ),

@@ -52,6 +52,7 @@ pub(super) fn dialect_code(number: u16, dialect: &Dialect) -> Own {
         (Lathe::A, 900) | (Lathe::B, 770) | (Lathe::C, 200) => special(BOX),
         (Lathe::A, 920) | (Lathe::B, 780) | (Lathe::C, 210) => special(THREAD_BOX),
         (Lathe::A, 940) | (Lathe::B, 790) | (Lathe::C, 240) => special(FACE),
+        (_, 810 | 820 | 860) if dialect.holes_along_z => special(number),
         (_, 830 | 840 | 850 | 870 | 880 | 890) => special(number),
         (Lathe::A, 500) => GCode::SetOffset,
         (Lathe::A, 980) => GCode::FeedMode(FeedMode::PerMinute),
@@ -62,7 +63,7 @@ pub(super) fn dialect_code(number: u16, dialect: &Dialect) -> Own {
         (Lathe::C, 700) => units(MM_PER_INCH),
         (Lathe::C, 710) => units(1.0),
         // The level that drilling cycles return to.
-        (Lathe::B | Lathe::C, 980 | 990) => GCode::Ignored,
+        (Lathe::B | Lathe::C, 980 | 990) => GCode::Retract(number == 980),
         _ => return Own::Common,
     })
 }

@@ -96,7 +96,11 @@ impl Control<'_> {
                     .help("write it in the block of a G1, G2 or G3, without M words that stop");
                 return false;
             }
-            self.fanuc_corner(word, report);
+            if self.taps(block) {
+                self.comma_of_tap(word, report);
+            } else {
+                self.fanuc_corner(word, report);
+            }
         }
         if let Some(span) = statement.alarm {
             let message =
@@ -201,7 +205,7 @@ impl Control<'_> {
         if run.words.unused == 0 {
             return;
         }
-        if self.rules.offset_numbers_stay {
+        if self.rules.offset_numbers_stay && !self.cycle_has_d_and_h(run) {
             // Numbers of tool offsets without a code that uses them: that of a
             // radius stays in force.
             if let Some(number) = run.words.take(b'D') {

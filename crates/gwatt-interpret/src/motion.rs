@@ -468,7 +468,8 @@ impl Control<'_> {
         if self.feed_mode_is(FeedMode::PerMinute) {
             return Some(per_unit);
         }
-        let rpm = self.highest_rpm(end, arc);
+        let followed = self.spindle.followed_rpm;
+        let rpm = followed.unwrap_or_else(|| self.highest_rpm(end, arc));
         if self.spindle.surface_mm_min.is_some() {
             let message = "under G96 a feed per revolution counts at the highest spindle speed \
                            of its block";

@@ -110,7 +110,9 @@ impl Control<'_> {
                 _ => {}
             }
         }
-        self.tool_length_again(run);
+        if !self.cycle_has_d_and_h(run) {
+            self.tool_length_again(run);
+        }
         self.note_bent();
     }
 

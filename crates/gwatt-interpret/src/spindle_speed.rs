@@ -19,6 +19,9 @@ pub(super) struct SpindleMode {
     limit_rpm: f64,
     /// G96 of SINUMERIK: somewhere up to its limit, 1/min.
     pub(super) unknown_up_to_rpm: Option<f64>,
+    /// The speed of the spindle that feeds per revolution follow, where the program names one
+    /// (SINUMERIK: SETMS), 1/min.
+    pub(super) followed_rpm: Option<f64>,
 }
 
 impl SpindleMode {
@@ -34,6 +37,7 @@ impl Default for SpindleMode {
             surface_mm_min: None,
             limit_rpm: f64::INFINITY,
             unknown_up_to_rpm: None,
+            followed_rpm: None,
         }
     }
 }

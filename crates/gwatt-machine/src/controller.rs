@@ -120,6 +120,10 @@ pub struct Language {
     pub arc_without_center: ArcWithoutCenter,
     /// Speed at which a tap is retracted, as a multiple of its feed; `None`: not known, counted as 1.
     pub tap_return_factor: Option<f64>,
+    /// What F of G74 and G84 of a mill is.
+    pub tap_feed: TapFeed,
+    /// D and H in a block of a canned cycle are words of the cycle, not offsets of tools.
+    pub cycles_take_d_and_h: bool,
     /// G53 moves at rapid speed whatever the motion word.
     pub moves_in_machine_at_rapid: bool,
     /// How far the radii of an arc at its start and end may always differ, mm: in a
@@ -186,6 +190,8 @@ pub struct Dialect {
     pub per_revolution: bool,
     /// G12 and G13 mill circular pockets.
     pub circular_pocket: bool,
+    /// G81 to G89 of a lathe all drill along Z, from the place R.
+    pub holes_along_z: bool,
     /// G28 without axes moves all of them.
     pub g28_all: bool,
     /// The word of M98 that names the block to begin at, such as `Q`.
@@ -261,6 +267,18 @@ pub enum ArcWithoutCenter {
     Line,
     /// A line or an alarm, as a parameter of the control says: it counts as a line.
     LineOrAlarm,
+}
+
+/// What F of a tap is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TapFeed {
+    /// A feed as any other: per minute under G94.
+    PerMinute,
+    /// The way in one turn of the spindle, whatever the feed mode.
+    Pitch,
+    /// One of them, as a parameter of the control says: the faster counts.
+    Unknown,
 }
 
 /// How the tool goes after a pass of G71 and G72 whose contour begins with both axes (type II)

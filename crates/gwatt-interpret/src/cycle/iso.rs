@@ -36,7 +36,8 @@ impl Control<'_> {
         }
         let initial_mm = self.initial_level(normal, begins);
         self.special.active = number;
-        let Some(repeats) = self.iso_repeats(number, run) else {
+        let own = self.d_and_h(number, run);
+        let Some(repeats) = own.and_then(|()| self.iso_repeats(number, run)) else {
             return;
         };
         let Some(mut hole) = self.iso_words(number, initial_mm, run) else {

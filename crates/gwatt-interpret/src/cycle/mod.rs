@@ -5,6 +5,7 @@ mod iso;
 mod peck;
 mod rs274;
 mod tap;
+mod tap_feed;
 mod words;
 
 /// The values of a cycle that hold until it is ended.
@@ -20,6 +21,8 @@ pub(super) struct Held {
     pub(super) q: Option<f64>,
     /// Depth of a peck of a tap, as it was written.
     pub(super) tap_q: Option<f64>,
+    /// H of a tap (Mazak): 0, or the speed of the return in percent.
+    pub(super) tap_h: Option<f64>,
     /// I, J, K of shifts as they were written.
     pub(super) ijk: [Option<f64>; 3],
     /// I, J, K of pecks as they were written.

@@ -30,6 +30,9 @@ impl Control<'_> {
         place: &mut AxisValues,
         run: &mut Run<'_, '_>,
     ) -> bool {
+        let Ok(feed_mm_s) = self.tap_feed_mm_s(run) else {
+            return false;
+        };
         self.note_return(run);
         let into = if hole.number == 840 {
             Turning::Clockwise
@@ -49,11 +52,11 @@ impl Control<'_> {
             // Back to the last depth it may be as fast as on the way out.
             let factor = again.then(|| self.tap_factor()).flatten();
             again = true;
-            self.tap_stroke(depth_mm, factor, place, run);
+            self.tap_stroke(depth_mm, [feed_mm_s, factor], place, run);
             run.spin(Turning::Stopped);
             self.iso_wait(hole, run);
             run.spin(into.reversed());
-            self.tap_stroke(hole.r_mm, self.tap_factor(), place, run);
+            self.tap_stroke(hole.r_mm, [feed_mm_s, self.tap_factor()], place, run);
             run.spin(into);
             if depth_mm <= hole.bottom_mm + 1e-9 {
                 return true;
@@ -63,15 +66,16 @@ impl Control<'_> {
 
     /// How many times as fast as F a tap is retracted, where that is faster.
     fn tap_factor(&self) -> Option<f64> {
-        let factor = self.machine.controller.language.tap_return_factor;
+        let by_h = self.tap_return_by_h();
+        let factor = by_h.or(self.machine.controller.language.tap_return_factor);
         factor.filter(|factor| *factor > 1.0)
     }
 
-    /// A stroke to a level, axis and spindle by a factor faster.
+    /// A stroke to a level at a speed, else that of F; axis and spindle by a factor faster.
     fn tap_stroke(
         &mut self,
         level_mm: f64,
-        factor: Option<f64>,
+        [base_mm_s, factor]: [Option<f64>; 2],
         place: &mut AxisValues,
         run: &mut Run<'_, '_>,
     ) {
@@ -79,8 +83,12 @@ impl Control<'_> {
         let length_mm = (place[normal] - level_mm).abs();
         place[normal] = level_mm;
         let rpm = self.modal.spindle_rpm;
-        let feed_mm_s = factor.filter(|_| length_mm > 0.0).and_then(|factor| {
-            let feed_mm_s = self.feed_speed(run, place, None, length_mm, true)?;
+        let asked = factor.or(base_mm_s.map(|_| 1.0));
+        let feed_mm_s = asked.filter(|_| length_mm > 0.0).and_then(|factor| {
+            let feed_mm_s = base_mm_s.or_else(|| {
+                let linear = true;
+                self.feed_speed(run, place, None, length_mm, linear)
+            })?;
             Some(feed_mm_s * factor)
         });
         let faster =
@@ -97,7 +105,8 @@ impl Control<'_> {
     }
 
     fn note_return(&self, run: &mut Run<'_, '_>) {
-        if self.machine.controller.language.tap_return_factor.is_none() {
+        let language = &self.machine.controller.language;
+        if language.tap_return_factor.is_none() && self.tap_return_by_h().is_none() {
             let message = "the way out of a tap counts at the speed of the way in: if the control \
                            returns faster (Haas: Setting 130; Fanuc: extraction override), give \
                            tap_return_factor under [language] in the machine file";

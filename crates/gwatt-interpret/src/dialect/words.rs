@@ -12,6 +12,11 @@ use gwatt_machine::{Dialect, Lathe, Point};
 use gwatt_syntax::Word;
 use gwatt_syntax::source::Span;
 
+/// P of G5 that chooses how blocks are read, and moves nothing (Fanuc B-63014EN, "High-Speed
+/// Machining", "High-Speed Cycle Machining": P10001 to P10999 run stored data; Mitsubishi,
+/// "High-speed Machining Mode": P1 and P2).
+const MODES_OF_G5: [f64; 4] = [0.0, 1.0, 2.0, 10_000.0];
+
 impl Control<'_> {
     pub(crate) fn dialect(&self) -> &Dialect {
         &self.machine.controller.language.dialect
@@ -255,6 +260,15 @@ impl Control<'_> {
                            smoothness that the program selects, or each level's stands under \
                            [[levels]]";
             run.report.note_once("smoothness", message, span);
+        }
+        let p = run.words.word(b'P', run.block).map(|word| word.value);
+        if number == 50 && p.is_some_and(|p| !MODES_OF_G5.contains(&p)) {
+            let at = run.words.span(b'P', run.block);
+            let message = "G5 with this P runs a high-speed cycle that the control keeps, which \
+                           moves axes in ways that the program does not say";
+            run.report
+                .error("unsupported-code", message, at)
+                .help("write the moves out; G5 P0, P1, P2 and P10000 are modes");
         }
         let on = |letter| run.words.word(letter, run.block).map(|word| word.value) == Some(1.0);
         if number == 51 && on(b'Q') || number == 80 && on(b'P') {

@@ -279,11 +279,14 @@ impl Control<'_> {
     ) -> Option<Result<Arc, ArcFault>> {
         let whole = run.whole();
         let mut via = [start[0], start[1], start[2]];
-        for (place, word) in via.iter_mut().zip(state.extra.via) {
+        for (axis, (place, word)) in via.iter_mut().zip(state.extra.via).enumerate() {
             if let Some((measure, value)) = word {
-                let value = value * self.modal.mm_per_unit;
                 let relative = measure == Measure::Increment
                     || measure == Measure::Modal && !self.modal.absolute;
+                // A place like that of an arc's centre: of X a diameter where these are.
+                let halved = axis == 0 && !relative && state.in_diameters();
+                let unit = self.modal.mm_per_unit;
+                let value = value * if halved { unit / 2.0 } else { unit };
                 *place = if relative { *place + value } else { value };
             }
         }

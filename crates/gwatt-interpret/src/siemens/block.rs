@@ -116,7 +116,9 @@ impl Control<'_> {
         self.spindle_modes(state, run);
         self.feed_mode(run);
         self.siemens_feed(state, run);
+        self.spindles(state, run);
         self.siemens_speed(state, run);
+        self.raise_speed(state);
         if let Some(word) = run
             .words
             .word(b'D', run.block)

@@ -17,35 +17,6 @@ impl Call {
         matches!(self.kind, Kind::Row | Kind::Circle)
     }
 
-    /// The place of the first argument whose value is not followed: of those that came later,
-    /// which change what others mean (_AXN, _DTD, _GMODE, _DMODE, _AMODE).
-    fn not_followed(&self, plane: [usize; 3]) -> Option<usize> {
-        // The first of the three that say how others are meant.
-        let modes = match self.kind {
-            Kind::Deep => 18,
-            Kind::Bore if self.feeds => 9,
-            Kind::Drill | Kind::Bore => 7,
-            _ => return None,
-        };
-        let own_plane = match plane {
-            [0, 1, _] => 1.0,
-            [2, 0, _] => 2.0,
-            _ => 3.0,
-        };
-        let fine = |place: usize, value: f64| match place.checked_sub(modes) {
-            None => self.kind != Kind::Deep || !matches!(place, 13 | 16),
-            Some(1) => value == own_plane,
-            // Depths as they are given; dwells in seconds.
-            Some(2) => [2.0, 10.0, 12.0].contains(&value),
-            Some(_) => false,
-        };
-        let given = (1..).zip(&self.values);
-        let mut given = given.filter_map(|(place, value)| Some((place, (*value)?)));
-        given
-            .find(|(place, value)| *value != 0.0 && !fine(*place, *value))
-            .map(|(place, _)| place)
-    }
-
     /// Whether it makes straight moves and does not turn the spindle.
     pub(super) fn is_plain(&self) -> bool {
         matches!(self.kind, Kind::Drill | Kind::Deep | Kind::Bore)
@@ -78,6 +49,13 @@ impl Control<'_> {
         // What was edited before has to be put back before it.
         run.facts.boundary = true;
         run.facts.uses_feed = true;
+        if let Some(argument) = call.not_followed(self.modal.plane) {
+            let message = format!("{argument} has a value that is not followed");
+            run.report
+                .error("cycle", message, call.span)
+                .help("leave it out, or write the holes by G0 and cycles without it");
+            return;
+        }
         if call.is_pattern() {
             return self.hole_pattern(state, call, run);
         }
@@ -88,13 +66,6 @@ impl Control<'_> {
             run.report
                 .error("cycle", "a cycle with G53, G153 or SUPA", call.span)
                 .help("write it in a block of its own");
-            return;
-        }
-        if let Some(place) = call.not_followed(self.modal.plane) {
-            let message = format!("argument {place} of the cycle has a value that is not followed");
-            run.report
-                .error("cycle", message, call.span)
-                .help("write the cycle with the arguments that it has had from the beginning");
             return;
         }
         match call.kind {

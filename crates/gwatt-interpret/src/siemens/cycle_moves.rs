@@ -5,7 +5,7 @@ use super::cycle::Levels;
 use super::cycle_call::{Call, Kind};
 use crate::control::{Control, Run};
 use crate::modal::{Feed, NumberText};
-use gwatt_machine::units::SECONDS_PER_MINUTE;
+use gwatt_machine::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
 use gwatt_motion::MoveKind;
 
 /// Strokes of a deep hole that one call may make.
@@ -191,6 +191,16 @@ impl Control<'_> {
         self.plunge(state, MoveKind::Rapid, &levels, levels.retract, run);
     }
 
+    /// A pitch in the unit that `_PITA` names; 0 is that of the program.
+    fn pitch_mm(&self, pitch: f64, unit: f64) -> f64 {
+        match unit {
+            1.0 => pitch,
+            2.0 => MM_PER_INCH / pitch,
+            3.0 => pitch * MM_PER_INCH,
+            _ => pitch * self.modal.mm_per_unit,
+        }
+    }
+
     /// "Rigid tapping (CYCLE84)", "Tapping with compensating chuck (CYCLE840)":
     /// the axis follows the spindle, pitch times speed.
     pub(super) fn tap(
@@ -203,19 +213,21 @@ impl Control<'_> {
         let rigid = call.kind == Kind::Tap;
         let [size, pitch] = if rigid { [8, 9] } else { [10, 11] };
         let size = call.value(size).map(f64::abs).filter(|size| *size > 0.0);
-        let standard = size.and_then(|size| {
+        let standard_mm = size.and_then(|size| {
             let found = PITCHES
                 .iter()
                 .find(|(known, _)| (*known - size).abs() < 1e-9)?;
-            Some(found.1 / self.modal.mm_per_unit)
+            Some(found.1)
         });
+        let unit = call.value(if rigid { 14 } else { 13 });
         let pitch = call.value(pitch).map(f64::abs).filter(|pitch| *pitch > 0.0);
+        let pitch_mm = pitch.map(|pitch| self.pitch_mm(pitch, unit.unwrap_or(0.0)));
         let speed = |place| call.value(place).map(f64::abs).filter(|speed| *speed > 0.0);
-        let spindle = Some(self.modal.spindle_rpm).filter(|rpm| *rpm > 0.0);
+        let spindle = Some(self.followed_rpm()).filter(|rpm| *rpm > 0.0);
         let speed_in = if rigid { speed(11) } else { None }.or(spindle);
         let speed_out = if rigid { speed(12) } else { None }.or(speed_in);
-        let (Some(pitch), Some(speed_in), Some(speed_out)) =
-            (pitch.or(standard), speed_in, speed_out)
+        let (Some(pitch_mm), Some(speed_in), Some(speed_out)) =
+            (pitch_mm.or(standard_mm), speed_in, speed_out)
         else {
             let message = "a tapping cycle without its pitch (MPIT 3 to 48 or PIT) or speed";
             run.report
@@ -229,7 +241,7 @@ impl Control<'_> {
         self.plunge(state, MoveKind::Rapid, &levels, levels.safe, run);
         // Overrides do not act on tapping.
         let factor = std::mem::replace(&mut state.feed_factor, 1.0);
-        let mm_s = |rpm: f64| pitch * self.modal.mm_per_unit * rpm / SECONDS_PER_MINUTE;
+        let mm_s = |rpm: f64| pitch_mm * rpm / SECONDS_PER_MINUTE;
         let [speed_in, speed_out] = [speed_in, speed_out].map(mm_s);
         self.special.speed_mm_s = Some(speed_in);
         self.plunge(state, MoveKind::Tap, &levels, levels.depth, run);

@@ -310,8 +310,9 @@ impl Reading<'_, '_, '_> {
         let arguments = self.arguments()?;
         if let Some(kind) = cycle_call::Kind::named(name) {
             let mut values = Vec::new();
-            for argument in arguments {
+            for (argument, place) in arguments.into_iter().zip(1..) {
                 values.push(match argument {
+                    Some(argument) if says_nothing(kind, place, &argument.value) => None,
                     Some(argument) => Some(self.number_of(&argument.value, start)?),
                     None => None,
                 });
@@ -364,4 +365,9 @@ impl Reading<'_, '_, '_> {
         }
         Ok(arguments)
     }
+}
+
+/// Whether an argument of a cycle is a text that says nothing about moves.
+fn says_nothing(kind: cycle_call::Kind, place: usize, value: &Val) -> bool {
+    matches!(value, Val::Text(text) if kind.passes_text(place, text))
 }

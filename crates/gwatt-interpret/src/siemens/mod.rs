@@ -14,6 +14,7 @@ pub(super) mod code;
 pub(super) mod codes;
 mod cursor;
 mod cycle;
+mod cycle_arguments;
 mod cycle_call;
 mod cycle_moves;
 mod definition;
@@ -32,6 +33,7 @@ mod radius_words;
 mod reading;
 mod saved;
 mod setting;
+mod spindles;
 mod statement;
 mod system;
 mod target;
@@ -92,6 +94,7 @@ struct Extra {
     corner: Option<Insert>,
     /// It changes a limit of the axes.
     turns_limit: bool,
+    spindles: spindles::Said,
 }
 
 /// What MCALL has set.
@@ -167,6 +170,7 @@ pub(super) struct Siemens {
     /// LIMS, 1/min.
     spindle_limit: Option<f64>,
     surface_speed: bool,
+    spindles: spindles::Spindles,
     /// G70: F stays in mm.
     feed_in_mm: bool,
     radius: radius::Radius,
@@ -211,6 +215,7 @@ impl Siemens {
             polar: Polar::default(),
             spindle_limit: None,
             surface_speed: false,
+            spindles: spindles::Spindles::default(),
             feed_in_mm: false,
             radius: radius::Radius::default(),
             rounds: None,

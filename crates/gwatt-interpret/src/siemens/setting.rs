@@ -1,6 +1,7 @@
 //! Names that set something, and addresses of several letters.
 
 use super::reading::Reading;
+use super::spindles::{SPINDLES_MAX, Said};
 use crate::compensation::Insert;
 use crate::expression::{Grammar, Outcome};
 use crate::level_words::named;
@@ -66,6 +67,7 @@ impl Reading<'_, '_, '_> {
                 let value = self.value_behind(name, start)?;
                 self.state.spindle_limit = Some(value.abs());
             }
+            "SETMS" => self.master_spindle(start)?,
             "OVR" => self.feed_override(start)?,
             "ACC" | "OVRRAP" | "OVRA" | "VELOLIM" | "ACCLIMA" | "VELOLIMA" | "JERKLIM"
             | "JERKLIMA" => self.limit(name, start)?,
@@ -89,6 +91,22 @@ impl Reading<'_, '_, '_> {
             _ => return Ok(false),
         }
         Ok(true)
+    }
+
+    /// "SETMS": the spindle that feeds per revolution follow; without a number that of power-on.
+    fn master_spindle(&mut self, start: usize) -> Outcome<()> {
+        let mut number = f64::from(Said::BACK);
+        if self.cursor.take(b'(') && !self.cursor.take(b')') {
+            number = self.number()?;
+            self.cursor.expect(b')')?;
+        }
+        if !(1.0..=f64::from(SPINDLES_MAX)).contains(&number) || number.fract() != 0.0 {
+            let message = format!("SETMS({number}) names no spindle");
+            let help = "write its number, from 1 on";
+            return Err(self.cursor.fault("syntax", message, help, start));
+        }
+        self.extra().spindles.master = Some(number as u32);
+        Ok(())
     }
 
     fn corner_word(&mut self, name: &str, start: usize) -> Outcome<()> {

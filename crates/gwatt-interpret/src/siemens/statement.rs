@@ -351,8 +351,16 @@ impl Reading<'_, '_, '_> {
                     *slot = Some((measure, value));
                 }
             }
-            (b'S' | b'M' | b'T' | b'D', 1) => self.push(letter, value, start, from, block)?,
+            (b'S' | b'M' | b'T' | b'D', 1) => {
+                if letter == b'S' {
+                    self.extra().spindles.speeds.push((number, value.abs()));
+                }
+                self.push(letter, value, start, from, block)?;
+            }
             (b'S' | b'M', _) => {
+                if letter == b'S' {
+                    self.extra().spindles.speeds.push((number, value.abs()));
+                }
                 let message = "what other spindles than the first do is not counted";
                 self.note("other-spindle", message, start);
             }

@@ -87,7 +87,7 @@ impl Control<'_> {
                 .help("write I for X, J for Y, K for Z, greater than 0");
             return None;
         }
-        if self.modal.spindle_rpm <= 0.0 {
+        if self.followed_rpm() <= 0.0 {
             run.report
                 .error(
                     "no-spindle-speed",
@@ -97,7 +97,7 @@ impl Control<'_> {
                 .help("write S before it");
             return None;
         }
-        Some(lead_mm * share * self.modal.spindle_rpm / SECONDS_PER_MINUTE)
+        Some(lead_mm * share * self.followed_rpm() / SECONDS_PER_MINUTE)
     }
 
     /// G63, for its block only: F is the speed of the tap.

@@ -53,7 +53,8 @@ impl Control<'_> {
     pub(crate) fn retract_level(&mut self, initial: bool, span: Span, run: &mut Run<'_, '_>) {
         let fanuc = self.rules.cycles == CycleWords::Fanuc;
         let in_cycle = matches!(self.modal.motion, Motion::Special(_));
-        if fanuc && !initial && !in_cycle {
+        let lathe = self.dialect().lathe.is_some();
+        if fanuc && !lathe && !initial && !in_cycle {
             run.report
                 .error(
                     "unsupported-code",
@@ -108,7 +109,7 @@ impl Control<'_> {
         match number {
             50..=53 => self.spline(number, run),
             330 | 331 => self.thread(number, run),
-            830..=890 if self.dialect().lathe.is_some() => self.turning_motion(number, run),
+            810..=890 if self.dialect().lathe.is_some() => self.turning_motion(number, run),
             THREAD | BOX | THREAD_BOX | FACE => self.turning_motion(number, run),
             380..=389 => self.probe(number, run),
             760 if !fanuc => self.thread_cycle(run),

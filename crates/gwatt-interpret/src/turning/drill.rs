@@ -1,18 +1,24 @@
 //! G83 to G85 along Z and G87 to G89 along X ("Canned Cycle for Drilling
 //! (G80-G89)" of lathes): R is a distance from where the cycle begins, and the
-//! tool comes back to there.
+//! tool comes back to there, in G-code systems B and C to R under G99.
+//!
+//! Haas ("G81 Drill Canned Cycle" to "G89", lathe operator's manual 96-8900): all along Z, R is
+//! the place of the R plane.
 
 use super::state::Hole;
 use super::words::turning_needs;
 use super::{X, Z};
 use crate::control::{Control, Run};
 use crate::special::Turning as Spin;
-use gwatt_machine::{ALL_AXES, AxisValues};
+use gwatt_machine::{ALL_AXES, AxisSet, AxisValues};
+use gwatt_motion::ActionKind;
 use gwatt_motion::MoveKind::{Feed, Rapid, Tap};
 
 /// Why it is not known how far its pecks return.
 const BY_RETURN: &str = "how far its pecks return is a parameter of the control: say \
                          pecks_return_to_r under [language] of the machine file";
+/// Why a hole that ends at R is not written out.
+const ENDS_AT_R: &str = "it returns to R (G99), where the holes after it begin";
 /// Dwells are in milliseconds unless they have a point.
 const MILLISECOND_S: f64 = 1e-3;
 /// The way out of G85 and G89 is this much faster.
@@ -20,19 +26,31 @@ const OUT_FACTOR: f64 = 2.0;
 
 impl Control<'_> {
     pub(super) fn drill(&mut self, number: u16, run: &mut Run<'_, '_>) {
-        let axis = if number >= 870 { X } else { Z };
-        let begins = self.special.active != number;
-        if begins {
+        let axis = self.axis_of_hole(number);
+        let before = self.special.active;
+        if before != number {
+            // The initial level stays from one cycle to the next.
+            let goes_on = matches!(before, 810..=890) && self.axis_of_hole(before) == axis;
+            let begin = if goes_on {
+                self.turning.hole.begin
+            } else {
+                self.position.at[axis]
+            };
             self.special.active = number;
             self.turning.hole = Hole {
-                begin: self.position.at[axis],
+                begin,
                 ..Hole::default()
             };
         }
         if !self.drill_words(number, axis, run) {
             return;
         }
-        let repeats = run.words.take(b'K').unwrap_or(1.0);
+        let by = if self.dialect().holes_along_z {
+            b'L'
+        } else {
+            b'K'
+        };
+        let repeats = run.words.take(by).unwrap_or(1.0);
         let mut place = self.position.at;
         let Some(unknown) = self.targets(run, false, &mut place) else {
             return;
@@ -57,18 +75,42 @@ impl Control<'_> {
                 .help("write the places out");
             return;
         }
-        place[axis] = hole.begin;
+        // At the initial level, or at the R of the hole before.
+        place[axis] = self.position.at[axis];
         self.go(run, Rapid, &place, unknown, None);
         let level = hole.begin + hole.level;
+        let initial = self.special.to_initial;
+        place[axis] = if initial { hole.begin } else { level };
+        if self.dialect().holes_along_z && matches!(number, 860..=880) {
+            return self.bore_and_stop(number, [level, bottom], place, run);
+        }
         self.bore(number, axis, [level, bottom], place, run);
-        place[axis] = hole.begin;
-        self.part(run, Rapid, &place);
+        if !initial {
+            run.facts.guessed = Some(ENDS_AT_R);
+        }
+        if initial || self.position.at[axis] != level {
+            self.part(run, Rapid, &place);
+        }
+    }
+
+    /// The axis along which a cycle drills.
+    fn axis_of_hole(&self, number: u16) -> usize {
+        if number >= 870 && !self.dialect().holes_along_z {
+            X
+        } else {
+            Z
+        }
     }
 
     /// Takes the words of the hole; its axis is not a place any more.
     fn drill_words(&mut self, number: u16, axis: usize, run: &mut Run<'_, '_>) -> bool {
         if let Some(level) = self.plain_length(b'R', run) {
-            self.turning.hole.level = level;
+            let from = if self.dialect().holes_along_z {
+                self.position.absolute(axis, 0.0) - self.turning.hole.begin
+            } else {
+                0.0
+            };
+            self.turning.hole.level = from + level;
         }
         let letter = ALL_AXES[axis].letter();
         let incremental = run.words.incremental & super::bit(letter) != 0 || !self.modal.absolute;
@@ -123,7 +165,7 @@ impl Control<'_> {
                 let mut depth = level;
                 if let Some(peck) = hole.peck {
                     if !self.machine.controller.language.pecks_return_to_r {
-                        note_pecks(run);
+                        self.note_pecks(run);
                     }
                     while (bottom - depth) * inward > peck + 1e-9 && run.within_limits() {
                         depth += inward * peck;
@@ -132,6 +174,10 @@ impl Control<'_> {
                         to(self, run, Rapid, depth - inward * off.min(peck));
                     }
                 }
+                to(self, run, Feed, bottom);
+                self.wait(hole.dwell_s, run);
+            }
+            810 | 820 => {
                 to(self, run, Feed, bottom);
                 self.wait(hole.dwell_s, run);
             }
@@ -148,7 +194,8 @@ impl Control<'_> {
                 to(self, run, Feed, bottom);
                 self.wait(hole.dwell_s, run);
                 let feed = self.modal.feed;
-                if let Some(feed) = &mut self.modal.feed {
+                let faster = !self.dialect().holes_along_z;
+                if let Some(feed) = self.modal.feed.as_mut().filter(|_| faster) {
                     feed.value *= OUT_FACTOR;
                 }
                 to(self, run, Feed, level);
@@ -157,19 +204,52 @@ impl Control<'_> {
         }
     }
 
+    /// G86 to G88 of Haas: the spindle stops at the bottom; after G87 and G88 the operator
+    /// retracts the tool to somewhere. `end`: where the cycle ends.
+    fn bore_and_stop(
+        &mut self,
+        number: u16,
+        [level, bottom]: [f64; 2],
+        end: AxisValues,
+        run: &mut Run<'_, '_>,
+    ) {
+        let turning = self.special.spindle;
+        let mut place = end;
+        place[Z] = level;
+        self.part(run, Rapid, &place);
+        place[Z] = bottom;
+        self.part(run, Feed, &place);
+        self.wait(self.turning.hole.dwell_s, run);
+        run.spin(Spin::Stopped);
+        if number == 860 {
+            self.part(run, Rapid, &end);
+            run.spin(turning);
+            return;
+        }
+        run.act(ActionKind::Stop, 0.0);
+        run.spin(turning);
+        self.position.unknown.insert(Z);
+        self.go(run, Rapid, &end, AxisSet(1 << Z), None);
+    }
+
     fn wait(&self, dwell_s: f64, run: &mut Run<'_, '_>) {
         if dwell_s > 0.0 {
             self.dwell(run, dwell_s);
         }
     }
-}
 
-fn note_pecks(run: &mut Run<'_, '_>) {
-    let whole = run.whole();
-    let message = "G83 and G87 are taken to come out to R after each peck and to stay 1 mm off the \
-                   last depth, which are parameters of the control (5101 bit RTR, 5114): say \
-                   pecks_return_to_r = true and peck_clearance_mm under [language] of the machine \
-                   file";
-    run.facts.guessed = Some(BY_RETURN);
-    run.report.note_once("peck-clearance", message, whole);
+    fn note_pecks(&self, run: &mut Run<'_, '_>) {
+        let whole = run.whole();
+        let message = if self.dialect().holes_along_z {
+            "G83 is taken to come out to R after each peck and to stay 1 mm off the last depth: \
+             Settings 52 and 22 of the control; say pecks_return_to_r = true and peck_clearance_mm \
+             under [language] of the machine file"
+        } else {
+            "G83 and G87 are taken to come out to R after each peck and to stay 1 mm off the \
+             last depth, which are parameters of the control (5101 bit RTR, 5114): say \
+             pecks_return_to_r = true and peck_clearance_mm under [language] of the machine file"
+        };
+        run.facts.guessed = Some(BY_RETURN);
+        run.report.note_once("peck-clearance", message, whole);
+    }
 }

@@ -8,7 +8,7 @@ use super::printer_table::PrinterTable;
 use super::value::{At, NotNegative, Positive};
 use crate::controller::{
     ArcRule, ArcWithoutCenter, CompensationCorner, CompensationLead, Lathe, PathMode, Point,
-    PowerOnMotion, RapidJoint, RapidPath, SpindleWait, ToolChange, TypeTwo,
+    PowerOnMotion, RapidJoint, RapidPath, SpindleWait, TapFeed, ToolChange, TypeTwo,
 };
 use crate::family::Family;
 use crate::knob::{KnobTarget, KnobUnit};
@@ -98,6 +98,12 @@ pub(crate) struct LanguageTable {
     /// Whether G73 and G83 take I, J and K, a first peck that becomes smaller down to a least
     /// one, and K next to Q, a depth after which G73 returns to R; default false.
     pub(crate) pecks_by_ijk: Option<bool>,
+    /// What F of G74 and G84 of a mill is: as any feed (per minute under G94), the pitch, or one
+    /// of them as a parameter of the control says; default: as any feed.
+    pub(crate) tap_feed: Option<TapFeed>,
+    /// Whether D and H in a block of a canned cycle are words of the cycle, not offsets of
+    /// tools; default false.
+    pub(crate) cycles_take_d_and_h: Option<bool>,
     /// Whether G83 and G87 of a lathe come out to R after each peck; default: a parameter
     /// of the control says so.
     pub(crate) pecks_return_to_r: Option<bool>,
@@ -145,6 +151,9 @@ pub(crate) struct LanguageTable {
     pub(crate) tool_change_moves: Option<Vec<At<String>>>,
     /// G12 and G13 mill circular pockets, as on a Haas; default false.
     pub(crate) circular_pocket: Option<bool>,
+    /// Whether G81 to G89 of a lathe all drill along Z, from the place R, as on a Haas; default
+    /// false: G83 to G85 along Z and G87 to G89 along X, R being a distance.
+    pub(crate) holes_along_z: Option<bool>,
     /// Whether G28 without axes moves all of them; default false.
     pub(crate) g28_all: Option<bool>,
     /// The word of M98 that names the block to begin at, of the program that is called, or

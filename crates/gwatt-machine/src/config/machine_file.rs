@@ -21,7 +21,7 @@ use super::value::{
     RapidPercent, ResponseTime, Share,
 };
 use crate::controller::{
-    ArcWithoutCenter, PathMode, Point, PowerOnMotion, RapidPath, ToolChange, TypeTwo,
+    ArcWithoutCenter, PathMode, Point, PowerOnMotion, RapidPath, TapFeed, ToolChange, TypeTwo,
 };
 
 /// A machine whose drives share a power converter.
@@ -231,6 +231,9 @@ pub(crate) struct OwnLanguageTable {
     /// How many times as fast as the way in the return of a rigid tap is (Haas: Setting 130;
     /// Fanuc: parameter 5211, as a factor; Mitsubishi: #1172); default 1.
     pub(crate) tap_return_factor: Option<AtLeastOne>,
+    /// What F of G74 and G84 of a mill is where the program does not say so (Mitsubishi: #8159;
+    /// Mazak: F94 bit 6); default: as the profile says.
+    pub(crate) tap_feed: Option<TapFeed>,
     /// How G41 and G42 shift the path.
     pub(crate) cutter_compensation: Option<CompensationTable>,
     /// G and M words that move no axis and raise no limit on this machine, besides those of

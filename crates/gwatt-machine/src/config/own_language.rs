@@ -41,6 +41,7 @@ pub(crate) fn take(
     if let Some(factor) = &own.tap_return_factor {
         language.tap_return_factor = Some(factor.value);
     }
+    language.tap_feed = own.tap_feed.unwrap_or(language.tap_feed);
     if let Some(motion) = own.power_on_motion {
         language.power_on_motion = motion;
     }

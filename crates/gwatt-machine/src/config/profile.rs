@@ -15,7 +15,7 @@ use super::word;
 use crate::axis::AxisId;
 use crate::controller::{
     ArcRule, ArcWithoutCenter, Controller, CutterCompensation, Dialect, Language, Planner,
-    PowerOnMotion, RapidJoint, RapidKnob, RapidPath, SpindleWait,
+    PowerOnMotion, RapidJoint, RapidKnob, RapidPath, SpindleWait, TapFeed,
 };
 use crate::knob::{Knob, KnobArgument, KnobTarget, KnobUnit};
 use crate::queue::{LaserMode, MESSAGE, MESSAGES, Queue, QueueEffect, QueueWord};
@@ -103,6 +103,8 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
         type_2: table.type_2,
         arc_without_center: (table.arc_without_center).unwrap_or(ArcWithoutCenter::Refused),
         tap_return_factor: None,
+        tap_feed: table.tap_feed.unwrap_or(TapFeed::PerMinute),
+        cycles_take_d_and_h: table.cycles_take_d_and_h.unwrap_or(false),
         moves_in_machine_at_rapid: table.moves_in_machine_at_rapid.unwrap_or(false),
         arc_tolerance_mm: table
             .arc_tolerance_mm
@@ -154,6 +156,7 @@ fn dialect(table: &LanguageTable) -> Dialect {
         semicolon_ends_block: table.semicolon_ends_block.unwrap_or(false),
         per_revolution: table.feed == Some(FeedName::PerRevolution),
         circular_pocket: table.circular_pocket.unwrap_or(false),
+        holes_along_z: table.holes_along_z.unwrap_or(false),
         g28_all: table.g28_all.unwrap_or(false),
         call_block: table.call_block.map(|name| match name {
             CallBlockName::Q => b'Q',
