@@ -7,6 +7,7 @@ mod company;
 mod cycles;
 mod feed_modes;
 mod figures;
+mod firmware_moves;
 mod first_feed;
 mod flow_through;
 mod halts;

@@ -62,6 +62,7 @@ mod isg;
 mod kept;
 mod okuma;
 mod fanuc;
+mod laser;
 mod lathe_holes;
 mod turning;
 mod words;

@@ -1,6 +1,8 @@
 //! The language of 3D printers: each construct by a program worked by hand,
 //! with the source of its meaning.
 
+mod corners;
+mod firmware;
 mod heaters;
 mod limits;
 mod lines;

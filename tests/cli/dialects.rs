@@ -261,7 +261,7 @@ fn grbl_s_dollar_lines_are_read() {
     let peak = |text: &str| text.split(" (line").next().map(str::to_owned);
     assert_eq!(peak(&plain.stdout), peak(&lower));
     for setting in [
-        "$120=1e6", "$110=1e6", "$11=5", "$32=1", "$115=1", "$100=250", "$120=-1",
+        "$120=1e6", "$110=1e6", "$11=5", "$32=2", "$115=1", "$100=250", "$120=-1",
     ] {
         let number = setting.split('=').next().unwrap();
         refused(

@@ -223,18 +223,28 @@ fn lines_that_stay_as_they_are() {
             "it carries a checksum",
         ),
         (
-            "M220 S90\nG1 X100 F12000\n".to_owned(),
-            "M220 scales its feed",
-        ),
-        (
-            "PROBE\n".to_owned(),
-            "it stops, changes the tool or ends the program",
+            "START_PRINT\n".to_owned(),
+            "what it sets only the machine knows",
         ),
     ] {
         for strategy in [Strategy::Accel, Strategy::Optimal, Strategy::Split] {
             let found = refused(&machine, how(strategy, true), &program);
             assert!(found.contains(reason), "{program}: {found}");
         }
+    }
+}
+
+/// Where the block itself may not be changed, words before it act all the same.
+#[test]
+fn words_before_lines_that_stay_as_they_are() {
+    let machine = machine(1.0, "");
+    for line in ["PROBE", "M220 S90\nG1 X100 F12000"] {
+        let program = format!("G1 X1 F600\n{line}\nM220 S100\nG1 X2 F600\n");
+        let (text, summary) = fits(&machine, how(Strategy::Optimal, false), &program);
+        assert!(summary.after.peak_w <= 1.0 && summary.before.peak_w > 1.0);
+        let added = |line: &&str| line.starts_with("SET_VELOCITY_LIMIT ");
+        let own: Vec<&str> = text.lines().filter(|line| !added(line)).collect();
+        assert_eq!(own, program.lines().collect::<Vec<_>>(), "{text}");
     }
 }
 

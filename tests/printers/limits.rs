@@ -24,10 +24,7 @@ fn speed_limits_of_axes() {
     3 feed X1.000>2.000 v10.000
     note corner-speeds
     ");
-    assert_snapshot!(reprap("M566 X1800\nG1 X1 F600\n"), @r"
-    2 feed X0.000>1.000 v10.000
-    note corner-speeds
-    ");
+    assert_snapshot!(reprap("M566 X1800\nG1 X1 F600\n"), @"2 feed X0.000>1.000 v10.000");
 }
 
 /// The extruder's share of an arc is that of each of its chords: 1 mm/s for 12 mm on a quarter of a

@@ -117,7 +117,13 @@ impl Control<'_> {
         let rises = saved.at[Z] > self.position.at[Z];
         let turns = if rises { [z, others] } else { [others, z] };
         for axes in turns {
-            self.go_back(run, saved, axes, feed_mm_s);
+            let here = &self.position.at;
+            if axes
+                .iter()
+                .any(|axis| saved.at[axis] != here[axis] || unknown.contains(axis))
+            {
+                self.go_back(run, saved, axes, feed_mm_s);
+            }
         }
     }
 

@@ -33,6 +33,7 @@ mod radius_words;
 mod reading;
 mod saved;
 mod setting;
+mod spindle_speeds;
 mod spindles;
 mod statement;
 mod system;
@@ -94,7 +95,7 @@ struct Extra {
     corner: Option<Insert>,
     /// It changes a limit of the axes.
     turns_limit: bool,
-    spindles: spindles::Said,
+    spindles: spindle_speeds::Said,
 }
 
 /// What MCALL has set.
@@ -170,7 +171,7 @@ pub(super) struct Siemens {
     /// LIMS, 1/min.
     spindle_limit: Option<f64>,
     surface_speed: bool,
-    spindles: spindles::Spindles,
+    spindles: spindle_speeds::Spindles,
     /// G70: F stays in mm.
     feed_in_mm: bool,
     radius: radius::Radius,
@@ -215,7 +216,7 @@ impl Siemens {
             polar: Polar::default(),
             spindle_limit: None,
             surface_speed: false,
-            spindles: spindles::Spindles::default(),
+            spindles: spindle_speeds::Spindles::default(),
             feed_in_mm: false,
             radius: radius::Radius::default(),
             rounds: None,

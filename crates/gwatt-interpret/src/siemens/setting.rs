@@ -1,7 +1,7 @@
 //! Names that set something, and addresses of several letters.
 
 use super::reading::Reading;
-use super::spindles::{SPINDLES_MAX, Said};
+use super::spindle_speeds::{SPINDLES_MAX, Said};
 use crate::compensation::Insert;
 use crate::expression::{Grammar, Outcome};
 use crate::level_words::named;
