@@ -3,7 +3,7 @@
 use divan::{Bencher, black_box};
 use gwatt::interpret::{Arc, FeedMode, Move, MoveKind};
 use gwatt::limit::{Allowed, Ends, Law, LimitOptions, Permit, Solver, Strategy};
-use gwatt::machine::{Axis, AxisSet, Machine, PathMode};
+use gwatt::machine::{AXES, Axis, AxisSet, Machine, PathMode};
 use gwatt::plan::jerk::{JerkLimits, State, position_target, speed_target};
 use gwatt::plan::{Overrides, plan};
 use gwatt::power::{Assessment, Assessor, PowerModel, Want};
@@ -153,6 +153,7 @@ fn solve(bencher: Bencher<'_, '_>, name: &str, strategy: Strategy, mv: &Move) {
         positions: false,
         feed_before: None,
         feed_accel_mm_s2: mv.accel_mm_s2,
+        speed_mm_s: [f64::INFINITY; AXES],
     };
     machine.converters[0].regen_power_w = None;
     machine.limits.margin = 0.0;

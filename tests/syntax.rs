@@ -94,7 +94,9 @@ fn naive_lines(bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut lines = vec![Vec::new()];
     for (index, &byte) in bytes.iter().enumerate() {
         lines.last_mut().unwrap().push(byte);
-        let split = byte == b'\r' && bytes.get(index + 1) == Some(&b'\n');
+        // Up to eight CRs are one line end together with an LF after them.
+        let crs = bytes[index..].iter().take_while(|it| **it == b'\r').count();
+        let split = byte == b'\r' && crs <= 8 && bytes.get(index + crs) == Some(&b'\n');
         if matches!(byte, b'\r' | b'\n') && !split {
             lines.push(Vec::new());
         }

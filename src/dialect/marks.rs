@@ -481,7 +481,7 @@ fn flavor(line: &Line, name: &str) -> bool {
     line.raw().starts_with(';') && value.is_some_and(|value| value.trim_start().starts_with(name))
 }
 
-/// Slic3r's and PrusaSlicer's `reprap` is RepRap/Sprinter, which Marlin comes from; Cura's is
+/// `Slic3r`'s and `PrusaSlicer`'s `reprap` is RepRap/Sprinter, which Marlin comes from; Cura's is
 /// `RepRapFirmware`.
 fn is_sprinter(line: &Line) -> bool {
     let value = line.comment().trim().strip_prefix("GCODE_FLAVOR =");

@@ -74,8 +74,7 @@ impl Control<'_> {
         };
 
         // From here on, it happens.
-        (self.moved, self.printer.stands) = (true, false);
-        self.printer.pending = *moving;
+        (self.moved, self.printer.stands, self.printer.pending) = (true, false, *moving);
         steps.push(Step::Move(Move {
             line,
             number: block.number.map(|word| word.value),

@@ -285,7 +285,8 @@ impl Control<'_> {
         head: (u8, u16, Span),
         parameters: &Parameters,
     ) {
-        if !self.own_command(run, head, parameters) {
+        let klipper = self.names_parameters() && unknown_to_klipper(run, head);
+        if !klipper && !self.own_command(run, head, parameters) {
             self.ordinary(run, head, parameters);
         }
     }
@@ -318,13 +319,6 @@ impl Control<'_> {
                 run.act(ActionKind::MayStop, 0.0);
             }
             (b'G', 280) => self.home(run, parameters, span),
-            (b'G', 300 | 540..=593 | 600 | 610) if self.names_parameters() => {
-                refuse(
-                    run,
-                    span,
-                    "Klipper does not know this word, and goes on without it",
-                );
-            }
             (b'G', 600) => self.save_position(run, parameters, span),
             (b'G', 610) if self.one_a_line() => {
                 self.return_to_position(run, parameters, span);
@@ -345,10 +339,6 @@ impl Control<'_> {
             }
             (b'M', 1200) => self.push_state(run, span),
             (b'M', 1210) => self.pop_state(run, span),
-            (b'M', 2000) if self.names_parameters() => {
-                let message = "Klipper does not know M200 and goes on without it: E stays a length";
-                run.report.note_once("volumetric", message, span);
-            }
             (b'M', 2000) => self.volumetric(run, parameters, span),
             (b'M', 2010) if parameters.is_empty() => {}
             (b'M', 2030) => self.speed_caps(run, parameters, span),
@@ -407,6 +397,25 @@ fn text_command(run: &mut Run<'_, '_>, number: u16) {
         ActionKind::Other
     };
     run.act(kind, f64::from(number) / 10.0);
+}
+
+/// Words that Klipper does not know: it goes on without them.
+fn unknown_to_klipper(run: &mut Run<'_, '_>, (letter, number, span): (u8, u16, Span)) -> bool {
+    match (letter, number) {
+        (b'M', 2000) => {
+            let message = "Klipper does not know M200 and goes on without it: E stays a length";
+            run.report.note_once("volumetric", message, span);
+        }
+        (b'G', 300 | 540..=593 | 600 | 610) => {
+            refuse(
+                run,
+                span,
+                "Klipper does not know this word, and goes on without it",
+            );
+        }
+        _ => return false,
+    }
+    true
 }
 
 /// Refuses a command by name.

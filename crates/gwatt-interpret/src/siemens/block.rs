@@ -203,8 +203,8 @@ impl Control<'_> {
         let revolutions = run.words.take(b'S');
         let time = match (seconds, revolutions) {
             (Some(seconds), None) => seconds,
-            (None, Some(turns)) if self.modal.spindle_rpm > 0.0 => {
-                turns * SECONDS_PER_MINUTE / self.modal.spindle_rpm
+            (None, Some(turns)) if self.followed_rpm() > 0.0 => {
+                turns * SECONDS_PER_MINUTE / self.followed_rpm()
             }
             (None, Some(_)) => {
                 run.report
