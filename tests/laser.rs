@@ -6,9 +6,10 @@ use std::io::Cursor;
 use gwatt::diagnostic::Diagnostic;
 use gwatt::machine::Machine;
 use gwatt::pipeline::{Options, moves};
+use gwatt::power::Certificate;
 
 use crate::machines::{linear_axes, machine_from};
-use crate::runs::summary_of;
+use crate::runs::{rows_of, summary_of};
 
 fn router(laser_mode: &str) -> Machine {
     machine_from(&format!(
@@ -55,6 +56,34 @@ fn s_in_a_block_that_moves() {
     // By itself it waits in either mode.
     let alone = with.replace(" S", "\nS");
     assert!(figures(&on, &alone).0 > 2.0 * plain.0);
+}
+
+/// With a beam of constant power (M3) the axes may stop at a line without a way, and where a line
+/// that moves by no motion word changes between G0 and G1 (grbl: `mc_line`; gcode.c, step 3b).
+#[test]
+fn a_beam_of_constant_power_waits() {
+    let peak = |laser_mode: &str, beam: &str, line: &str| {
+        let program =
+            format!("G21 G90\nG92 Y0\n{beam} S100\nG1 X1 F12000\nG1 X20\n{line}\nG1 X40\n");
+        let rows = rows_of(&router(laser_mode), &program);
+        let last = rows.last().expect("a row");
+        (last.peak_w, last.certificate)
+    };
+    for line in ["G1 X20", "G1 X20.01", "G0\nG1"] {
+        for mode in ["laser_mode = true", ""] {
+            let waits = peak(mode, "M3", line);
+            assert_eq!(waits.1, Certificate::Robust, "{line}");
+            assert!(waits.0 >= peak(mode, "M4", line).0, "{line}");
+        }
+        assert_eq!(
+            peak("laser_mode = false", "M3", line).1,
+            Certificate::Planned
+        );
+    }
+    assert_eq!(
+        peak("laser_mode = true", "M3", "G1 X21").1,
+        Certificate::Planned
+    );
 }
 
 #[test]

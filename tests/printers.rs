@@ -247,6 +247,7 @@ fn unknown_moves_count_in_full() {
     3 feed from anywhere X v10.000 loads 111
     note macro-heaters
     note unknown-moves
+    note macro-settings
     ");
 }
 

@@ -77,8 +77,8 @@ pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static s
              builder moves, only the machine can change"
         }
         RUNS_A_FILE => {
-            "where the file moves nothing, list the command under [language] of the machine file in \
-             `ignored_macros`; else list it in `unknown_macros` and put the file's text next to the \
+            "where it moves nothing, list the command under [language] of the machine file in \
+             `ignored_macros`; else list it in `unknown_macros` and put its text next to the \
              program, into a file of the command's name such as G32.gcode"
         }
         SETS_UNKNOWN => {

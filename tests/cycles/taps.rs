@@ -37,6 +37,27 @@ fn h_of_a_tap_on_a_mazak() {
     ");
 }
 
+/// It holds for its own cycle alone: after another one both meanings of F count again.
+#[test]
+fn h_of_a_tap_ends_with_its_cycle() {
+    let program =
+        "S1000 M3\nG0 Z10.\nG99 G84 X1. Z-5. R2. F1.25 H0\nG81 X2. Z-5.\nG84 X3. Z-5.\nG80\n";
+    let taps: Vec<String> = moves("mazak", program)
+        .lines()
+        .filter(|line| line.contains(" tap "))
+        .map(str::to_owned)
+        .collect();
+    assert_eq!(
+        taps,
+        [
+            "3 tap 1 0 -5 F1.25",
+            "3 tap 1 0 2 F1.25",
+            "5 tap 3 0 -5 F1250",
+            "5 tap 3 0 2 F1250"
+        ]
+    );
+}
+
 /// Only G43 chooses a length: a Z of 50 is at 101, and R at 53.
 #[test]
 fn h_of_a_tap_is_no_tool_length() {

@@ -226,6 +226,15 @@ fn lines_that_stay_as_they_are() {
             "START_PRINT\n".to_owned(),
             "what it sets only the machine knows",
         ),
+        // Macros of the machine, which may set limits of their own.
+        (
+            "T1\n".to_owned(),
+            "the machine runs a file or a macro of its own for it",
+        ),
+        (
+            "SET_VELOCITY_LIMIT ACCEL=100 VELOCITY=20\nPAUSE\n".to_owned(),
+            "the machine runs a file or a macro of its own for it",
+        ),
     ] {
         for strategy in [Strategy::Accel, Strategy::Optimal, Strategy::Split] {
             let found = refused(&machine, how(strategy, true), &program);

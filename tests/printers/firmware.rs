@@ -90,8 +90,10 @@ fn homing_under_a_shift() {
 fn m0_runs_a_file() {
     assert_snapshot!(reprap("G1 X10 F600\nM0\n"), @r"
     1 feed X0.000>10.000 v10.000
-    2 feed from anywhere XYZE
+    2 feed from anywhere XYZE loads 111
+    note macro-heaters
     note unknown-moves
+    note macro-settings
     ");
     let quiet = machine_with("reprap", "[language]\nignored_macros = [\"M0\"]\n");
     assert_snapshot!(super::run(&quiet, "G1 X10 F600\nM0\n"), @"1 feed X0.000>10.000 v10.000");

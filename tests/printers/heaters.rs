@@ -79,6 +79,7 @@ fn heaters_may_be_on_after_a_macro() {
     9 feed X4.000>5.000 v1.000 a1000 loads 100
     note macro-heaters
     note unknown-moves
+    note macro-settings
     ");
     // Of several tools one target says nothing of the others; this ends all.
     assert_snapshot!(run(&own,
@@ -91,6 +92,7 @@ fn heaters_may_be_on_after_a_macro() {
     8 feed X4.000>5.000 v1.000 a1000 loads 100
     note macro-heaters
     note unknown-moves
+    note macro-settings
     ");
     // What Marlin does of itself heats nothing but under G26; RepRapFirmware runs files.
     assert_snapshot!(marlin("G29\nG1 X1 F60\nG26\n"), @r"
@@ -100,6 +102,7 @@ fn heaters_may_be_on_after_a_macro() {
     note unknown-moves
     note bed-levelling
     note macro-heaters
+    note macro-settings
     ");
     let bare = load(
         "schema = 1\nname = \"t\"\ncontroller = \"klipper\"\n[converter]\npeak_power_w = 1e5\n\

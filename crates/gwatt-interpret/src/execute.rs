@@ -281,6 +281,7 @@ impl Control<'_> {
             self.motion_word(run);
             self.lathe_corner(run);
             self.motion(run);
+            self.beam_at_empty_line(run);
             if run.report.diagnostics.errors == errors {
                 self.complain_about_rest(run);
             }

@@ -30,8 +30,8 @@ pub const MOVES_OF_ITSELF: &str = "the machine moves axes of itself in it";
 
 /// Why a command of a printer takes no F that moves in a way of its own.
 pub const OWN_MOVES: &str = "only the firmware knows how it moves";
-/// Why a printer's command keeps its words that runs a file of the machine.
-pub const RUNS_A_FILE: &str = "the machine runs a file of its own for it";
+/// Why a printer's command keeps its words that runs a file or a macro of the machine.
+pub const RUNS_A_FILE: &str = "the machine runs a file or a macro of its own for it";
 /// The same where nothing is known of what a macro sets.
 pub const SETS_UNKNOWN: &str = "what it sets only the machine knows";
 

@@ -65,7 +65,7 @@ impl Control<'_> {
             feed = Some(plain_feed(word, text, self.modal.mm_per_unit)?);
         }
         let Straight { end, moving, .. } = &straight;
-        let way = path_length(&self.position.at, end, *moving, None);
+        let way = self.direct_way(end, *moving)?;
         let (kind, feed_mm_s) = if uses_feed {
             let feed = feed.as_ref().or(self.modal.feed.as_ref())?;
             (MoveKind::Feed, self.straight_speed(feed, end, way)?)
@@ -125,6 +125,14 @@ impl Control<'_> {
             self.modal.feed = feed;
         }
         Some(())
+    }
+
+    /// The way to `end`: its length and whether linear axes move; `None` where a laser may wait for
+    /// the axes there.
+    #[inline]
+    fn direct_way(&self, end: &AxisValues, moving: AxisSet) -> Option<(f64, bool)> {
+        let way = path_length(&self.position.at, end, moving, None);
+        (!self.is_empty_way(way.0)).then_some(way)
     }
 
     /// The speed of a straight feed to `end`, on a way with its length and whether linear axes

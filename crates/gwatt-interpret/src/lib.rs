@@ -39,6 +39,7 @@ mod knob_words;
 mod languages;
 mod level_words;
 mod label;
+mod laser;
 mod lathe_cycle;
 mod letters;
 mod m_words;

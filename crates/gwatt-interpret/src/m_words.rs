@@ -1,9 +1,8 @@
 //! M words, S and T: actions, and the loads that they switch.
 
-use super::code::Motion;
 use super::control::{Control, Run};
 use super::facts::{TOOL_CHANGE_UNKNOWN, ToolWords};
-use gwatt_machine::{LaserMode, ToolChange};
+use gwatt_machine::ToolChange;
 use gwatt_motion::{ActionKind, Step};
 use gwatt_syntax::Word;
 use gwatt_syntax::source::Span;
@@ -20,10 +19,7 @@ impl Control<'_> {
 
     pub(super) fn speed_and_tool(&mut self, run: &mut Run<'_, '_>) {
         self.spindle_mode(run);
-        let laser = self.machine.controller.queue.laser_mode;
-        if laser != LaserMode::Off {
-            self.beam_waits(run);
-        }
+        self.beam_between_lines(run);
         let other = run
             .words
             .m
@@ -36,14 +32,7 @@ impl Control<'_> {
             && !other
         {
             self.set_speed(value, run);
-            let kind = if laser != LaserMode::Off && moves_by_words(run) {
-                if laser == LaserMode::Unknown && self.switches.spindle != 5 {
-                    note_laser_mode(run);
-                }
-                ActionKind::SpeedInMotion
-            } else {
-                ActionKind::SpindleSpeed
-            };
+            let kind = self.kind_of_speed(run);
             run.act(kind, value);
             self.note_spindle(run);
         }
@@ -55,25 +44,6 @@ impl Control<'_> {
                 run.act(ActionKind::ToolSelect, tool);
             }
             run.facts.selects_tool = true;
-        }
-    }
-
-    /// In laser mode a beam of constant power (M3) waits for the axes where a line without motion
-    /// changes between G0 and feeds (grbl, gcode.c, step 3b).
-    fn beam_waits(&self, run: &mut Run<'_, '_>) {
-        let feeds =
-            |motion: Motion| matches!(motion, Motion::Linear | Motion::ArcCw | Motion::ArcCcw);
-        let words = run.block.words.iter();
-        let motion = words
-            .rev()
-            .find_map(|word| match (word.letter, word.value) {
-                (b'G', 0.0 | 80.0) => Some(false),
-                (b'G', 1.0 | 2.0 | 3.0) => Some(true),
-                _ => None,
-            });
-        let changes = motion.is_some_and(|feed| feed != feeds(self.modal.motion));
-        if changes && self.switches.spindle == 3 && !run.words.has_axes() {
-            run.act(ActionKind::MayStop, 0.0);
         }
     }
 
@@ -266,23 +236,6 @@ impl Control<'_> {
             }
         }
     }
-}
-
-/// Whether the axes of a block are where a motion word takes them, and belong to no other word.
-fn moves_by_words(run: &Run<'_, '_>) -> bool {
-    let other = |number: f64| matches!(number.trunc() as u16, 10 | 28 | 30 | 38 | 92);
-    let words = &run.block.words;
-    let taken = words
-        .iter()
-        .any(|word| word.letter == b'G' && other(word.value));
-    run.words.has_axes() && !taken
-}
-
-fn note_laser_mode(run: &mut Run<'_, '_>) {
-    let message = "whether laser mode ($32) is on is not known: S in blocks that move counts both \
-                   as a stop and as none; `[path] laser_mode` in the machine file says which";
-    let span = run.whole();
-    run.report.note_once("laser-mode", message, span);
 }
 
 fn is_in_motion(step: &Step) -> bool {

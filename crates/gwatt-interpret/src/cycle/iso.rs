@@ -15,6 +15,18 @@ use gwatt_motion::CYCLE as FIXED;
 use gwatt_motion::{ActionKind, FeedMode, MoveKind};
 
 impl Control<'_> {
+    /// Whether a cycle is the first of its series, in which values are kept; H of a tap holds for
+    /// its own cycle alone.
+    fn begins_cycles(&mut self, number: u16) -> bool {
+        let begins = self.special.active == 0;
+        if begins {
+            self.special.held = super::Held::default();
+        } else if self.special.active != number {
+            self.special.held.tap_h = None;
+        }
+        begins
+    }
+
     /// A block of a canned cycle.
     pub(crate) fn iso_cycle(&mut self, number: u16, run: &mut Run<'_, '_>) {
         run.facts.fixed = Some(FIXED);
@@ -30,10 +42,7 @@ impl Control<'_> {
             return;
         }
         let [first, second, normal] = self.modal.plane;
-        let begins = self.special.active == 0;
-        if begins {
-            self.special.held = super::Held::default();
-        }
+        let begins = self.begins_cycles(number);
         let initial_mm = self.initial_level(normal, begins);
         self.special.active = number;
         let own = self.d_and_h(number, run);

@@ -3,6 +3,7 @@
 use super::early::rises;
 use super::left_out::{note_levelling, note_uncounted};
 use super::line::{Head, Parameters, Text, has, holds_word, value};
+use super::position::Mover;
 use super::verify_checksum;
 use crate::code::{GCode, Motion};
 use crate::control::{Control, Run};
@@ -39,12 +40,15 @@ impl Control<'_> {
             let early = !pending.is_empty() && acts_early;
             let limits = early.then(|| self.knobs.clone());
             let next = self.one_command(run, text, index > 0);
-            if let Some(before) = limits.filter(|before| *before != self.knobs) {
+            let moves = |steps: &[Step]| steps.iter().any(|step| matches!(step, Step::Move(_)));
+            // The firmware waits for the axes before it runs a file that may set limits.
+            let own = run.steps.get(so_far..).unwrap_or_default();
+            let limits = limits.filter(|before| *before != self.knobs && !moves(own));
+            if let Some(before) = limits {
                 for (limits, factor) in rises(self.machine, pending, &before, &self.knobs) {
                     run.act(ActionKind::EarlyLimits(limits), factor);
                 }
             }
-            let moves = |steps: &[Step]| steps.iter().any(|step| matches!(step, Step::Move(_)));
             let (earlier, own) = run.steps.split_at_checked(so_far).unwrap_or_default();
             if index > 0 && moves(own) && earlier.get(before..).is_some_and(moves) {
                 run.facts.fixed = Some("its line holds several commands that move");
@@ -71,7 +75,13 @@ impl Control<'_> {
         let (letter, number, span) = match head {
             Head::Code(letter, number, span) => (letter, number, span),
             Head::Tool(span) => {
-                self.unknown_moves(run, span);
+                let klipper = self.names_parameters();
+                let mover = if klipper {
+                    Mover::File
+                } else {
+                    Mover::Firmware
+                };
+                self.unknown_moves(run, span, mover);
                 return None;
             }
             Head::Name(name, span) => {
@@ -96,7 +106,7 @@ impl Control<'_> {
             }
             // RepRapFirmware runs stop.g or sleep.g (GCodes2.cpp, cases 0 and 1).
             if !self.one_a_line() && number <= 10 && !self.is_listed(letter, number) {
-                self.unknown_moves(run, span);
+                self.unknown_moves(run, span, Mover::File);
             }
             text_command(run, number);
             return None;
@@ -245,10 +255,7 @@ impl Control<'_> {
             self.shift_axes(parameters);
             run.act(ActionKind::Other, action);
         } else if listed(&printer.unknown_moves) {
-            if listed(&printer.may_heat) {
-                self.may_heat(run, span);
-            }
-            self.unknown_moves(run, span);
+            self.listed_moves(run, (letter, number, span));
             if has(parameters, b'F') {
                 // Whether it stays in force, firmwares see differently.
                 self.modal.feed = None;
@@ -325,7 +332,7 @@ impl Control<'_> {
             }
             (b'G', 800) => {
                 self.modal.motion = Motion::None;
-                self.unknown_moves(run, span);
+                self.unknown_moves(run, span, Mover::Firmware);
             }
             (b'M', 20) => {
                 // RepRapFirmware stops here; the others do not know it.

@@ -70,6 +70,9 @@ impl Control<'_> {
                 } else {
                     Corner::Deviation(set_mm)
                 });
+            } else if own.is_some() {
+                let message = "Marlin takes J from 0.01 to 0.3 mm alone: the value before it stays";
+                run.report.note_once("corner-speeds", message, span);
             } else if names_corners(parameters) {
                 note_corners(run, span);
             }
@@ -100,8 +103,11 @@ impl Control<'_> {
             // Bit 0 of the policy: between moves of any kind.
             steps.same_kind_only = policy.trunc() % 2.0 == 0.0;
         }
-        if has(parameters, b'J') || names_other_axes(parameters) {
+        if has(parameters, b'J') {
             note_corners(run, span);
+        } else if names_other_axes(parameters) {
+            let message = "steps of speed of other axes than X, Y, Z and E are not followed";
+            run.report.note_once("corner-speeds", message, span);
         }
         run.facts.turns_knob = true;
         let before = self.knobs.corner;
@@ -111,9 +117,10 @@ impl Control<'_> {
             Corner::Steps(steps)
         });
         let early = self.machine.controller.language.printer.early_limits;
-        if early && before != self.knobs.corner && !self.printer.pending.is_empty() {
-            let message = "jerk that is set right after a move may hold for the corner before that \
-                           move already: that is not followed";
+        if early && before != self.knobs.corner && !self.printer.stands {
+            let message = "jerk that is set while axes may move may hold for corners of moves that \
+                           wait in the queue already: that is not followed, and higher values draw \
+                           more there";
             run.report.note_once("corner-speeds", message, span);
         }
     }

@@ -7,6 +7,7 @@
 use super::kept::Back;
 use super::left_out::{note_advance, note_levelling};
 use super::line::{Parameters, Text};
+use super::position::Mover;
 use crate::control::{Control, Run};
 use crate::flow::library;
 use crate::jump::Transfer;
@@ -54,10 +55,12 @@ impl Control<'_> {
             }
             self.act_by_name(run, name);
         } else if moves || listed(&printer.unknown_moves) {
-            if listed(&printer.may_heat) {
-                self.may_heat(run, span);
-            }
-            self.unknown_moves(run, span);
+            let mover = if listed(&printer.may_heat) {
+                Mover::File
+            } else {
+                Mover::Firmware
+            };
+            self.unknown_moves(run, span, mover);
         } else if shifts {
             self.shift_axes(&Parameters::new());
             self.act_by_name(run, name);

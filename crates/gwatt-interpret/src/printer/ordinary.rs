@@ -1,6 +1,7 @@
 //! Words as other controllers have them, and which mode E is in.
 
 use super::line::{Parameters, value};
+use super::position::Mover;
 use crate::control::{Control, Run};
 use crate::report::Report;
 use gwatt_machine::ExtruderMode;
@@ -63,7 +64,7 @@ impl Control<'_> {
         };
         self.words(run, &block);
         if to_endstop {
-            self.unknown_moves(run, span);
+            self.unknown_moves(run, span, Mover::Firmware);
         }
     }
 

@@ -4,46 +4,71 @@ use super::left_out::note_levelling;
 use super::line::Parameters;
 use crate::control::{Control, Run};
 use crate::facts::{OWN_MOVES, RUNS_A_FILE};
-use crate::knob::KnobState;
 use crate::places::EXTRUDER;
 use gwatt_machine::{AxisId, AxisSet};
 use gwatt_motion::ActionKind;
 use gwatt_syntax::source::Span;
 
+/// Marlin's words (number × 10) that the firmware waits for once they have moved: probing,
+/// levelling, calibration.
+const WAITED_FOR: [u16; 11] = [290, 300, 310, 320, 330, 340, 350, 382, 383, 384, 385];
+
+/// Whose the moves of a command are that only the machine knows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Mover {
+    /// The firmware's, under the limits in force.
+    Firmware,
+    /// The same, which it waits for.
+    FirmwareWaiting,
+    /// Those of a file or a macro of the machine, which may set limits of its own.
+    File,
+}
+
 impl Control<'_> {
-    /// Moves that only the firmware knows: every axis at its full speed and
+    /// Moves of a word that the profile or the machine file lists under `unknown_moves`.
+    pub(super) fn listed_moves(
+        &mut self,
+        run: &mut Run<'_, '_>,
+        (letter, number, span): (u8, u16, Span),
+    ) {
+        let printer = &self.machine.controller.language.printer;
+        let marlin = !printer.several_commands && !printer.velocity_limit;
+        let is_file = printer
+            .may_heat
+            .iter()
+            .any(|one| one.is_code(letter, number));
+        let mover = if is_file {
+            Mover::File
+        } else if marlin && letter == b'G' && WAITED_FOR.contains(&number) {
+            Mover::FirmwareWaiting
+        } else {
+            Mover::Firmware
+        };
+        self.unknown_moves(run, span, mover);
+    }
+
+    /// Moves that only the machine knows: every axis at its full speed and
     /// acceleration, and from then on in an unknown place.
-    pub(super) fn unknown_moves(&mut self, run: &mut Run<'_, '_>, span: Span) {
+    pub(super) fn unknown_moves(&mut self, run: &mut Run<'_, '_>, span: Span, mover: Mover) {
+        if mover == Mover::File {
+            self.may_heat(run, span);
+        }
         let name = String::from_utf8_lossy(span.of(run.report.text)).into_owned();
         let message = format!(
-            "{name} moves in a way that only the firmware knows: \
+            "{name} moves in a way that only the machine knows: \
              every axis counts at its full speed and acceleration"
         );
         run.report.note_once("unknown-moves", &message, span);
         note_levelling_if(run, &name, span);
-        // Marlin's probing ends with moves that it waits for: from rest to rest, or none at all.
-        let printer = &self.machine.controller.language.printer;
-        let waits =
-            !printer.several_commands && !printer.velocity_limit && name.starts_with(['G', 'g']);
-        let rests = waits && self.printer.stands;
-        // RepRapFirmware runs files of the machine, which may set limits of their own and, as
-        // most do, set them back.
-        let runs_files = self.machine.controller.language.printer.several_commands;
-        let limits = runs_files.then(|| self.knobs.clone());
-        if runs_files {
-            self.limits_at_least(&KnobState::new(self.machine));
-        }
-        if runs_files {
+        if mover == Mover::File {
+            self.may_set_limits(run, span);
             run.facts.fixed.get_or_insert(RUNS_A_FILE);
         } else {
             run.facts.own_feed = Some(OWN_MOVES);
         }
+        // From rest to rest, or no moves at all.
+        let rests = mover == Mover::FirmwareWaiting && self.printer.stands;
         self.at_full_speed(run, self.machine.axis_set);
-        if let Some(limits) = limits {
-            self.take_corner(limits.corner);
-            self.knobs = limits;
-            self.settle();
-        }
         self.printer.stands = rests;
         let end = if rests {
             ActionKind::Rest
@@ -161,11 +186,7 @@ impl Control<'_> {
         if tool != self.printer.tool {
             self.printer.tool = tool;
             self.printer.several_tools = true;
-            let may_heat = &self.machine.controller.language.printer.may_heat;
-            if may_heat.iter().any(|one| one.is_code(b'T', number)) {
-                self.may_heat(run, span);
-            }
-            self.unknown_moves(run, span);
+            self.listed_moves(run, (b'T', number, span));
         }
     }
 }
@@ -175,5 +196,34 @@ fn note_levelling_if(run: &mut Run<'_, '_>, name: &str, span: Span) {
     let name = name.to_ascii_uppercase();
     if name == "G29" || name == "G32" || name.starts_with("BED_MESH") {
         note_levelling(run, span);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::printer::testing::execute;
+    use gwatt_motion::{ActionKind, Step};
+
+    /// What comes last in a program on Marlin.
+    fn last(lines: &[&str]) -> Option<ActionKind> {
+        let (steps, found) = execute("marlin", "", lines);
+        assert_eq!(found.errors, 0, "{:?}", found.list);
+        steps.iter().rev().find_map(|step| match step {
+            Step::Action(action) => Some(action.kind),
+            Step::Move(_) => None,
+        })
+    }
+
+    #[test]
+    fn probing_ends_at_rest_where_it_begins_so() {
+        assert_eq!(last(&["G28", "G29"]), Some(ActionKind::Rest));
+        assert_eq!(last(&["G28", "G29", "G30"]), Some(ActionKind::Rest));
+        // It may move nothing, and the move before it goes on then.
+        let moving = last(&["G28", "G1 X5 F600", "G29"]);
+        assert_eq!(moving, Some(ActionKind::MayStop));
+        // The firmware does not wait for these.
+        for word in ["G42 I3 J3", "G26", "M600"] {
+            assert_eq!(last(&["G28", word]), Some(ActionKind::MayStop), "{word}");
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Macros of the machine, of which nothing is known, and what they leave unstated.
 
+use super::position::Mover;
 use super::state::Unstated;
 use crate::code::Motion;
 use crate::control::{Control, Run};
@@ -13,20 +14,22 @@ impl Control<'_> {
     /// A macro of which only the machine knows what it does: it may move anywhere, heat, and
     /// leave another feed, other modes and the limits of the machine file.
     pub(super) fn unknown_macro(&mut self, run: &mut Run<'_, '_>, span: Span) {
-        // Its own moves may run under the limits that it sets.
-        run.facts.turns_knob = true;
         let factors = &mut self.printer;
         factors.feed_factor = factors.feed_factor.max(1.0);
         factors.flow = factors.flow.max(1.0);
-        self.limits_at_least(&KnobState::new(self.machine));
-        self.may_heat(run, span);
-        self.unknown_moves(run, span);
-        run.facts.own_feed = None;
         run.facts.fixed = Some(SETS_UNKNOWN);
+        self.unknown_moves(run, span, Mover::File);
         self.modal.feed = None;
         self.modal.motion = Motion::None;
         self.printer.unstated = Unstated::of(true, true);
         self.settle();
+    }
+
+    /// A file or a macro of the machine, under whose limits its own moves run too: those of the
+    /// machine file count, or those in force where they are higher.
+    pub(super) fn may_set_limits(&mut self, run: &mut Run<'_, '_>, span: Span) {
+        run.facts.turns_knob = true;
+        self.limits_at_least(&KnobState::new(self.machine));
         let name = String::from_utf8_lossy(span.of(run.report.text)).into_owned();
         let message = format!(
             "what {name} sets only the machine knows: until the program sets them after it, limits \

@@ -47,34 +47,42 @@ const DEEP: [Later; 8] = [
     PLANE,
     MODE,
 ];
+const UNIT: Later = ("_PITA", Takes::Unit);
+const TAP_MODE: Later = ("_AMODE", Takes::TapMode);
+/// The thread of a tap by name, on the control's screens.
+const THREAD: [Later; 3] = [
+    ("_PITM", Takes::Nothing),
+    ("_PTAB", Takes::Nothing),
+    ("_PTABA", Takes::Nothing),
+];
 /// `_DAM` and `_VRT` are of pecks, which `_VARI` has to choose.
 const TAP: [Later; 12] = [
     AXIS,
-    ("_PITA", Takes::Unit),
+    UNIT,
     ("_TECHNO", Takes::Technology),
     ("_VARI", Takes::Nothing),
     ("_DAM", Takes::Any),
     ("_VRT", Takes::Any),
-    ("_PITM", Takes::Nothing),
-    ("_PTAB", Takes::Nothing),
-    ("_PTABA", Takes::Nothing),
+    THREAD[0],
+    THREAD[1],
+    THREAD[2],
     GEOMETRY,
     PLANE,
-    ("_AMODE", Takes::TapMode),
+    TAP_MODE,
 ];
 const FLOATING_TAP: [Later; 12] = [
     ("ENC", Takes::Encoder),
     ("MPIT", Takes::Any),
     ("PIT", Takes::Any),
     AXIS,
-    ("_PITA", Takes::Unit),
+    UNIT,
     ("_TECHNO", Takes::Nothing),
-    ("_PITM", Takes::Nothing),
-    ("_PTAB", Takes::Nothing),
-    ("_PTABA", Takes::Nothing),
+    THREAD[0],
+    THREAD[1],
+    THREAD[2],
     GEOMETRY,
     PLANE,
-    ("_AMODE", Takes::TapMode),
+    TAP_MODE,
 ];
 const ROW: [Later; 5] = [
     ("_VARI", Takes::Nothing),
