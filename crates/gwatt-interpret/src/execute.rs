@@ -278,6 +278,7 @@ impl Control<'_> {
         if run.words.is_plain_motion() && language.moves_plainly(self, run.words) {
             // The same as below, without asking for what is not there.
             self.read_feed(run);
+            self.beam_between_lines(run);
             self.motion_word(run);
             self.lathe_corner(run);
             self.motion(run);
