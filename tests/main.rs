@@ -24,6 +24,7 @@ mod spindle;
 mod syntax;
 mod period;
 mod schedules;
+mod settings;
 mod plain_moves;
 mod plan;
 mod jerk;

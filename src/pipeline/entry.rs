@@ -4,10 +4,12 @@ use super::ends::Places;
 use super::executor::Line;
 use super::line_key::LineKey;
 use super::untouched::{
-    COMPENSATED, MACHINE_COORDINATES, NO_FEED, PER_REVOLUTION, REFERENCE, UNKNOWN_FEED,
+    COMPENSATED, FEED_MODE, MACHINE_COORDINATES, NO_FEED, PER_REVOLUTION, REFERENCE, UNKNOWN_FEED,
     WITHOUT_STOP, help,
 };
-use crate::interpret::{Facts, FastPathState, FeedMode, KnobState, Motion, Move, MoveKind, Step};
+use crate::interpret::{
+    FEED_MODE_UNKNOWN, Facts, FastPathState, FeedMode, KnobState, Motion, Move, MoveKind, Step,
+};
 use crate::limit::{Change, Outcome, Permit, Waiting};
 use crate::machine::{AXES, AxisId, Machine, PathMode, RapidJoint, RapidPath};
 use crate::power::Assessment;
@@ -198,6 +200,7 @@ impl Entry {
         let apart = mv.kind == MoveKind::Rapid
             && (self.feed_mode_words().next().is_none() || self.may_be_per_minute());
         let feed = [
+            (self.mark.feed_mode_word == FEED_MODE_UNKNOWN, FEED_MODE),
             (facts.homes, "it homes the axes"),
             (facts.own_feed.is_some(), facts.own_feed.unwrap_or_default()),
             (facts.dwell_takes_feed, "an F in it would be its dwell"),

@@ -6,6 +6,7 @@ use crate::machine::{Lathe, Machine, PathMode};
 use crate::motion::{CYCLE, TURNING_CYCLE};
 
 /// Why a rapid is not written as a feed, where the program can help.
+pub(super) const FEED_MODE: &str = "neither G94 nor G95 says what F means";
 pub(super) const PER_REVOLUTION: &str = "the feed in force is per revolution";
 pub(super) const UNKNOWN_FEED: &str =
     "no F is in force, and the one that the control takes then is not known";
@@ -63,6 +64,10 @@ pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static s
         UNKNOWN_FEED => {
             "write F before it; or give the F of power-on, which no written one exceeds: \
              power_on_feed_mm_min under [language] of the machine file"
+        }
+        FEED_MODE => {
+            "write G94 or G95 before it; or say with which of them the machine begins: feed = \
+             \"per-minute\" or \"per-revolution\" under [language] of the machine file"
         }
         PER_REVOLUTION if language.dialect.lathe == Some(Lathe::A) => {
             "program G98 (feed per minute) and F in it before the rapid"

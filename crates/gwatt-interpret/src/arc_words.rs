@@ -107,7 +107,7 @@ impl Control<'_> {
             }
             Some(Ok(arc)) => {
                 if self.printer.adjusts {
-                    self.scale_extrusion(&mut end, unknown);
+                    self.scale_extrusion(run, &mut end, unknown);
                 }
                 self.go(run, MoveKind::Arc, &end, unknown, Some(arc));
             }

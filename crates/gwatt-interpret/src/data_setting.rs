@@ -54,6 +54,16 @@ impl Control<'_> {
             (true, 2 | 20) => self.set_system(form == 20, number, &words, span, run),
             (true, 1 | 10 | 11) => self.set_tool(form, number, &words, span, run),
             (false, 2 | 20) => self.fanuc_system(form == 20, number, &words, span, run),
+            (false, -1) if self.dialect().lathe.is_some() && number == Some(0.0) => {
+                // B-64304EN, "Programmable data input (G10)": P0 is no tool.
+                run.report
+                    .error(
+                        "data-setting",
+                        "G10 P0 shifts the workpiece coordinate system, which is not followed",
+                        span,
+                    )
+                    .help("write the shift into the work offset (G10 L2 P1 …)");
+            }
             (false, -1) if self.dialect().lathe.is_some() && number.is_some() => {
                 // G10 P X Z R Q: an offset of a tool (B-63604EN, "Setting of
                 // Tool Offset Data").

@@ -73,6 +73,8 @@ impl Control<'_> {
             (MoveKind::Rapid, f64::INFINITY)
         };
 
+        let extruded_mm = end[EXTRUDER] - self.position.at[EXTRUDER];
+        let path_accel_mm_s2 = self.path_accel(*moving, extruded_mm);
         // From here on, it happens.
         (self.moved, self.printer.stands, self.printer.pending) = (true, false, *moving);
         steps.push(Step::Move(Move {
@@ -91,8 +93,8 @@ impl Control<'_> {
             feed_mm_s,
             feed_excess: 1.0,
             feed_mode: FeedMode::PerMinute,
-            accel_mm_s2: self.axes_accel(kind, *moving),
-            path_accel_mm_s2: self.path_accel(*moving),
+            accel_mm_s2: self.axes_accel(kind, *moving, path_accel_mm_s2),
+            path_accel_mm_s2,
             jerk_factor: self.knobs.jerk_of(*moving),
             rapid_factor: self.knobs.rapid_factor,
             pace: 1.0,

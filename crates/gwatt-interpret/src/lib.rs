@@ -26,6 +26,7 @@ mod execute;
 mod expression;
 mod facts;
 mod feed_expression;
+mod feed_speed;
 mod hidden_words;
 mod first_motion;
 mod flow;
@@ -107,7 +108,7 @@ pub use gwatt_motion::{
     Action, ActionKind, Arc, Corner, FeedMode, Move, MoveKind, Square, Start, Step, Stray,
 };
 pub use knob::KnobState;
-pub use modal::{Feed, Modal, NumberText};
+pub use modal::{FEED_MODE_UNKNOWN, Feed, Modal, NumberText};
 pub use parameter_file::ParameterFile;
 pub use reading::{BlockDelete, ProbeResult, ProbeWay, Reading};
 pub use report::Diagnostics;

@@ -10,6 +10,9 @@ use gwatt_syntax::source::Span;
 /// M29 of Fanuc's controls, times ten: the tap after it is rigid.
 const RIGID: u16 = 290;
 
+/// M19, times ten.
+const ORIENT: u16 = 190;
+
 impl Control<'_> {
     /// Whether canned cycles are those of Fanuc and its relatives.
     fn motion_survives_cycles(&self) -> bool {
@@ -28,8 +31,12 @@ impl Control<'_> {
             && !self.rules.free_m_words
             // Such words stand next to S and T: `S580 M13`.
             && !self.dialect().other_m;
+        // S of M19 is an angle, or a speed to turn to it at: it makes no feed slower.
+        let orients = !self.rules.places_in_parameters
+            && run.words.m.iter().any(|(number, _)| *number == ORIENT);
         if let Some(value) = run.words.take(b'S')
             && !other
+            && !(orients && value.abs() <= self.modal.spindle_rpm)
         {
             self.set_speed(value, run);
             let kind = self.kind_of_speed(run);

@@ -10,6 +10,9 @@ use crate::rules::Macros;
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, Issue, IssueKind};
 
+const UNSURE_ANGLE: &str = "whether ATAN and ASIN give angles from 0 to 360 or from -180 to 180 a parameter of the control \
+     says: inverse_angles = \"from-zero\" or \"signed\" under [language] of the machine file";
+
 /// A note with its rule.
 pub(super) type Note = (&'static str, &'static str, Span);
 
@@ -101,6 +104,9 @@ impl Control<'_> {
             } else {
                 self.fanuc_corner(word, report);
             }
+        }
+        if let Some(span) = statement.unsure_angle {
+            report.note_once("inverse-angle", UNSURE_ANGLE, span);
         }
         if let Some(span) = statement.alarm {
             let message =

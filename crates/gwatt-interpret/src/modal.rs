@@ -5,6 +5,10 @@ use gwatt_machine::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
 use gwatt_machine::{AxisId, Lathe, Machine, PathMode, TurningPlane};
 use gwatt_motion::{Corner, FeedMode};
 
+/// In place of the G word that says what F means: none has said so, and the machine's settings,
+/// which decide, are not known.
+pub const FEED_MODE_UNKNOWN: u16 = 0;
+
 /// The feed in force: value, unit and text of the F word that set it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Feed {
@@ -83,7 +87,7 @@ pub struct Modal {
     /// G93, G94 or G95.
     pub feed_mode: FeedMode,
     /// The number of the G word that says so, times ten: on lathes also G98 and G99, on
-    /// SINUMERIK G96, G97 and their kin.
+    /// SINUMERIK G96, G97 and their kin; [`FEED_MODE_UNKNOWN`] before any.
     pub feed_mode_word: u16,
     /// The F in force, if any.
     pub feed: Option<Feed>,
@@ -105,6 +109,7 @@ impl Modal {
     #[must_use]
     pub fn power_on(machine: &Machine) -> Self {
         let language = &machine.controller.language;
+        let (feed_mode, feed_mode_word) = feed_at_power_on(machine);
         Self {
             motion: Motion::at_power_on(language),
             plane: if language.dialect.lathe.is_some() || turns(machine) {
@@ -117,17 +122,8 @@ impl Modal {
             arc_absolute: language.arc_absolute,
             mm_per_unit: if language.metric { 1.0 } else { MM_PER_INCH },
             unit_is_said: false,
-            feed_mode: if language.dialect.per_revolution {
-                FeedMode::PerRevolution
-            } else {
-                FeedMode::PerMinute
-            },
-            feed_mode_word: match (language.dialect.lathe, language.dialect.per_revolution) {
-                (Some(Lathe::A), true) => 990,
-                (Some(Lathe::A), false) => 980,
-                (_, true) => 950,
-                (_, false) => 940,
-            },
+            feed_mode,
+            feed_mode_word,
             feed: None,
             path_mode: machine.path.mode.unwrap_or(language.power_on_mode),
             corner: Corner::Round {
@@ -138,6 +134,20 @@ impl Modal {
             spindle_rpm: 0.0,
             diameter: language.dialect.diameter,
         }
+    }
+}
+
+/// What F means at power-on, and the G word that says so. Where the machine's settings decide and
+/// nobody gave them, it is by the revolution, which is never the slower.
+fn feed_at_power_on(machine: &Machine) -> (FeedMode, u16) {
+    let language = &machine.controller.language;
+    let unknown = language.family.facts().turns_in_unknown_feed && turns(machine);
+    match (language.dialect.lathe, language.dialect.per_revolution) {
+        (Some(Lathe::A), Some(true)) => (FeedMode::PerRevolution, 990),
+        (Some(Lathe::A), _) => (FeedMode::PerMinute, 980),
+        (_, Some(true)) => (FeedMode::PerRevolution, 950),
+        (_, None) if unknown => (FeedMode::PerRevolution, FEED_MODE_UNKNOWN),
+        _ => (FeedMode::PerMinute, 940),
     }
 }
 

@@ -8,9 +8,8 @@ use super::places::{EXTRUDER, POSITION_MAX_MM, STANDSTILL_MM};
 use super::printer::Course;
 use super::report::Report;
 use super::stray;
-use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_machine::{ALL_AXES, AxisKind, AxisSet, AxisValues};
-use gwatt_motion::{Arc, FeedMode, Move, MoveKind, Step, Stray, hold_to_path, path_length};
+use gwatt_motion::{Arc, Move, MoveKind, Step, Stray, hold_to_path, path_length};
 use gwatt_syntax::source::Span;
 
 /// Where a move goes.
@@ -239,7 +238,7 @@ impl Control<'_> {
         let machine_coordinates = run.facts.machine_coordinates;
         if let Some(unknown) = self.targets(run, machine_coordinates, &mut end) {
             if self.printer.adjusts {
-                self.scale_extrusion(&mut end, unknown);
+                self.scale_extrusion(run, &mut end, unknown);
             }
             self.go(run, kind, &end, unknown, None);
         }
@@ -323,10 +322,20 @@ impl Control<'_> {
                 self.printer_speed(run, &course, feed_mm_s, given_mm_s.is_some());
             rapid_factor *= self.speed_factor(&course, kind == MoveKind::Rapid);
         }
-        let path_accel_mm_s2 = self.path_accel(commanded);
-        let mut accel_mm_s2 = self.axes_accel(kind, commanded);
+        let extruded_mm = if unknown_start.contains(EXTRUDER) {
+            f64::NAN
+        } else {
+            end[EXTRUDER] - self.position.at[EXTRUDER]
+        };
+        let path_accel_mm_s2 = self.path_accel(commanded, extruded_mm);
+        let mut accel_mm_s2 = self.axes_accel(kind, commanded, path_accel_mm_s2);
         if !unknown_start.is_empty() {
             hold_to_path(self.machine, &mut accel_mm_s2, path_accel_mm_s2);
+            let [.., alone] = self.knobs.path_accel_mm_s2;
+            let printer = &self.machine.controller.language.printer;
+            if printer.may_retract(unknown_start) && alone.is_finite() {
+                accel_mm_s2[EXTRUDER] = accel_mm_s2[EXTRUDER].max(alone);
+            }
         }
         let strays = |arc| stray::of_arc(arc, &self.position.at, end);
         let stray = arc.as_ref().map_or(Stray::NONE, strays);
@@ -396,96 +405,40 @@ impl Control<'_> {
         })
     }
 
-    /// The limit of acceleration along the path of a move.
+    /// The limit of acceleration along the path of a move by which the extruder goes on by
+    /// `extruded_mm`; not a number where that is not known.
     #[inline]
-    pub(super) fn path_accel(&self, moving: AxisSet) -> f64 {
-        let spares = self.machine.controller.language.printer.path_accel_spares;
-        let slot = if moving.0 & !spares.0 == 0 {
-            2
+    pub(super) fn path_accel(&self, moving: AxisSet, extruded_mm: f64) -> f64 {
+        let printer = &self.machine.controller.language.printer;
+        let [prints, travels, alone] = self.knobs.path_accel_mm_s2;
+        if moving.0 & !printer.path_accel_spares.0 == 0 {
+            alone
+        } else if !moving.contains(EXTRUDER) {
+            travels
+        } else if !printer.drawing_back_travels || extruded_mm > 0.0 {
+            prints
+        } else if extruded_mm.is_nan() {
+            prints.max(travels)
         } else {
-            usize::from(!moving.contains(EXTRUDER))
-        };
-        self.knobs.path_accel_mm_s2[slot]
+            travels
+        }
     }
 
     /// The limits of acceleration of the axes in a move. One of the extruder alone may have
     /// that along the path in place of its own.
     #[inline]
-    pub(super) fn axes_accel(&self, kind: MoveKind, moving: AxisSet) -> AxisValues {
+    pub(super) fn axes_accel(
+        &self,
+        kind: MoveKind,
+        moving: AxisSet,
+        path_mm_s2: f64,
+    ) -> AxisValues {
         let mut accel_mm_s2 = *self.knobs.accel(kind);
-        let path_mm_s2 = self.path_accel(moving);
         let printer = &self.machine.controller.language.printer;
         if printer.retracts(moving, path_mm_s2) {
             accel_mm_s2[EXTRUDER] = path_mm_s2;
         }
         accel_mm_s2
-    }
-
-    /// The path speed that F asks for, mm/s; reports an F that is missing.
-    pub(super) fn feed_speed(
-        &self,
-        run: &mut Run<'_, '_>,
-        end: &AxisValues,
-        arc: Option<&Arc>,
-        length_mm: f64,
-        linear: bool,
-    ) -> Option<f64> {
-        let span = run.whole();
-        let feed = match &self.modal.feed {
-            Some(feed) if feed.value > 0.0 => feed,
-            Some(_) => {
-                run.report
-                    .error("no-feed", "a feed move with F0", span)
-                    .help("write the feed: F…");
-                return None;
-            }
-            None => {
-                if let Some(message) = self.rules.without_feed {
-                    run.report.note_once("no-feed-yet", message, span);
-                    return Some(f64::INFINITY);
-                }
-                run.report
-                    .error("no-feed", "a feed move, but no F is in force", span)
-                    .help("write F in this block or before; after G93, G94 or G95 it must be written again");
-                return None;
-            }
-        };
-        if self.feed_mode_is(FeedMode::InverseTime) {
-            if run.facts.feed_word.is_none() {
-                let help = "under G93 every block needs its own F";
-                run.report
-                    .error("no-feed", "a feed move without F under G93", span)
-                    .help(help);
-                return None;
-            }
-            return Some(length_mm * feed.value / SECONDS_PER_MINUTE);
-        }
-        let per_unit = if linear {
-            feed.linear_mm_s()
-        } else {
-            feed.rotary_deg_s()
-        };
-        if self.feed_mode_is(FeedMode::PerMinute) {
-            return Some(per_unit);
-        }
-        let followed = self.spindle.followed_rpm;
-        let rpm = followed.unwrap_or_else(|| self.highest_rpm(end, arc));
-        if self.spindle.surface_mm_min.is_some() {
-            let message = "under G96 a feed per revolution counts at the highest spindle speed \
-                           of its block";
-            run.report.note_once("surface-speed", message, span);
-        }
-        if rpm > 0.0 {
-            return Some(per_unit * rpm);
-        }
-        run.report
-            .error(
-                "no-spindle-speed",
-                "a feed per revolution, but no spindle speed is in force",
-                span,
-            )
-            .help("write S before the first move under G95");
-        None
     }
 }
 

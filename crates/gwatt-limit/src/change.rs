@@ -3,7 +3,7 @@
 use super::knob_level::level_of;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_machine::{
-    AXES, AxisKind, AxisSet, AxisValues, Knob, KnobArgument, KnobTarget, Machine, PathMode,
+    AXES, AxisId, AxisKind, AxisSet, AxisValues, Knob, KnobArgument, KnobTarget, Machine, PathMode,
 };
 use gwatt_motion::{Corner, FeedMode, Move, MoveKind, Square, hold_to_path, raise_to_path};
 
@@ -226,7 +226,12 @@ impl Change {
                 limit_path_accel(machine, &mut changed, values[0]);
                 return under_cap(machine, changed, self.speed, permit);
             }
+            let printer = &machine.controller.language.printer;
+            let retracts = printer.may_retract(mv.unknown_start);
             for axis in machine.axis_set.iter() {
+                if retracts && axis == AxisId::E as usize {
+                    continue;
+                }
                 if let Some(data) = &machine.axes[axis] {
                     changed.accel_mm_s2[axis] =
                         knob.unit

@@ -160,6 +160,17 @@ pub enum ToolChange {
     AfterMotion,
 }
 
+/// What ATAN\[…\]/\[…\] and ASIN\[…\] of macros give for negative angles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum InverseAngles {
+    /// Angles from 0 to 360 degrees.
+    FromZero,
+    /// Angles from -180 to 180 degrees.
+    #[default]
+    Signed,
+}
+
 /// What the controls of Fanuc, Haas and their relatives have besides ISO 6983.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[allow(
@@ -186,12 +197,20 @@ pub struct Dialect {
     pub other_m: bool,
     /// A `;` ends a block.
     pub semicolon_ends_block: bool,
-    /// F is a feed per revolution at power-on.
-    pub per_revolution: bool,
+    /// Whether F is a feed per revolution at power-on; `None`: nobody says so, and it is per
+    /// minute, or a setting of the machine decides.
+    pub per_revolution: Option<bool>,
+    /// What ATAN and ASIN of macros give.
+    pub inverse_angles: InverseAngles,
+    /// The machine file says so.
+    pub inverse_angles_are_known: bool,
     /// G12 and G13 mill circular pockets.
     pub circular_pocket: bool,
     /// G81 to G89 of a lathe all drill along Z, from the place R.
     pub holes_along_z: bool,
+    /// G87 of a mill bores and stops, and the operator takes the tool out; else it bores from
+    /// below.
+    pub bores_by_hand: bool,
     /// G28 without axes moves all of them.
     pub g28_all: bool,
     /// The word of M98 that names the block to begin at, such as `Q`.

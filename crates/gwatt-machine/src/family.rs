@@ -38,6 +38,8 @@ pub struct FamilyFacts {
     pub increments_in_machine_differ: bool,
     /// Where the plane at power-on is ZX, besides lathes with G-code systems.
     pub turning_plane: TurningPlane,
+    /// Whether F is by the minute or by the revolution at power-on of a lathe, its settings say.
+    pub turns_in_unknown_feed: bool,
     /// Canned cycles can be written out as single blocks.
     pub writes_out_cycles: bool,
     /// The way to a reference point is written in machine coordinates.
@@ -117,6 +119,7 @@ const ISO: FamilyFacts = FamilyFacts {
     feeds_in_machine_coordinates: false,
     increments_in_machine_differ: true,
     turning_plane: TurningPlane::Diameters,
+    turns_in_unknown_feed: false,
     writes_out_cycles: true,
     returns_in_machine_coordinates: false,
     reference_in_parameters: false,
@@ -192,6 +195,7 @@ const ISG: FamilyFacts = FamilyFacts {
 
 const SIEMENS: FamilyFacts = FamilyFacts {
     turning_plane: TurningPlane::Axes,
+    turns_in_unknown_feed: true,
     comment_to_line_end: true,
     writes_out_cycles: true,
     returns_in_machine_coordinates: true,

@@ -32,6 +32,8 @@ pub struct Printer {
     pub velocity_limit: bool,
     /// Axes that M204's P, T and S do not limit when no other axis moves.
     pub path_accel_spares: AxisSet,
+    /// Moves that draw the filament back go as those that do not print (M204 T).
+    pub drawing_back_travels: bool,
     /// M204 R, where it is given, takes the place of the extruder's own limit (M201) in moves
     /// of it alone.
     pub retract_by_path: bool,
@@ -133,6 +135,14 @@ impl Printer {
     pub fn retracts(&self, moving: AxisSet, path_accel_mm_s2: f64) -> bool {
         self.retract_by_path && moving.0 == 1 << AxisId::E as u16 && path_accel_mm_s2.is_finite()
     }
+
+    /// Whether moves from unknown places of these axes may be of the extruder alone, which then
+    /// is not limited by its own acceleration.
+    #[must_use]
+    #[inline]
+    pub fn may_retract(&self, unknown_start: AxisSet) -> bool {
+        self.retract_by_path && unknown_start.contains(AxisId::E as usize)
+    }
 }
 
 impl Default for Printer {
@@ -146,6 +156,7 @@ impl Default for Printer {
             limits_in_mm: false,
             velocity_limit: false,
             path_accel_spares: AxisSet(1 << 9),
+            drawing_back_travels: false,
             retract_by_path: false,
             feed_factor_spares: AxisSet(0),
             home_together: vec![AxisSet(0b11), AxisSet(0b100)],

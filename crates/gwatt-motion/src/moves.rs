@@ -295,6 +295,12 @@ pub enum EarlyLimits {
     PathAccel,
     /// The speed of axes (M203).
     Speed,
+    /// The feed (M220).
+    Feed,
+    /// The lengths of filament (M221).
+    Filament,
+    /// The steps of speed at the corners of all moves that wait (M566).
+    Corners,
 }
 
 /// The kinds of actions.

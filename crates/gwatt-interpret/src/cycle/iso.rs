@@ -41,6 +41,9 @@ impl Control<'_> {
                 .help("write G94 before it");
             return;
         }
+        // On a Haas the operator takes the tool out after G87, as after G88.
+        let by_hand = number == 870 && self.dialect().bores_by_hand;
+        let number = if by_hand { 880 } else { number };
         let [first, second, normal] = self.modal.plane;
         let begins = self.begins_cycles(number);
         let initial_mm = self.initial_level(normal, begins);

@@ -14,7 +14,11 @@ pub(crate) enum Function {
     Acot,
     /// Of y and x.
     Angle,
+    /// From 0 to 360 degrees.
+    AngleFromZero,
     Asin,
+    /// From 270 by 0 to 90 degrees.
+    AsinFromZero,
     Atan,
     /// Two bounds, then the value.
     Bound,
@@ -38,6 +42,12 @@ pub(crate) enum Function {
     Power,
     PowerOfTen,
     Round,
+    /// To the last decimal of an address (Fanuc: its least input increment), of which metric
+    /// programs have three for lengths, and those in inches four.
+    RoundThousandth,
+    RoundTenThousandth,
+    /// Of a feed, whose last decimal depends on the control: never down.
+    RoundFeed,
     /// By way of an integer, beyond which LinuxCNC gives nonsense.
     RoundInteger,
     /// Halves go up, of negative numbers too.
@@ -51,12 +61,22 @@ pub(crate) enum Function {
     TruncCorrected,
 }
 
+/// An angle in degrees, those below 0 a turn higher.
+fn from_zero(angle: f64) -> f64 {
+    if angle < 0.0 { angle + 360.0 } else { angle }
+}
+
 impl Function {
     /// How many values it takes.
     pub(crate) fn values(self) -> usize {
         match self {
             Self::Bound => 3,
-            Self::Angle | Self::Max | Self::Min | Self::Modulo | Self::Power => 2,
+            Self::Angle
+            | Self::AngleFromZero
+            | Self::Max
+            | Self::Min
+            | Self::Modulo
+            | Self::Power => 2,
             _ => 1,
         }
     }
@@ -71,8 +91,12 @@ impl Function {
             Self::Acot if x <= 0.0 => return Err("ACOT of a number that is not positive"),
             Self::Acot => libm::atan(1.0 / x).to_degrees(),
             Self::Angle => libm::atan2(x, y).to_degrees(),
-            Self::Asin if x.abs() > 1.0 => return Err("ASIN of a number beyond -1 and 1"),
+            Self::AngleFromZero => from_zero(libm::atan2(x, y).to_degrees()),
+            Self::Asin | Self::AsinFromZero if x.abs() > 1.0 => {
+                return Err("ASIN of a number beyond -1 and 1");
+            }
             Self::Asin => libm::asin(x).to_degrees(),
+            Self::AsinFromZero => from_zero(libm::asin(x).to_degrees()),
             Self::Atan => libm::atan(x).to_degrees(),
             Self::Bound => z.clamp(x.min(y), x.max(y)),
             Self::Outward if x < 0.0 => x.floor(),
@@ -99,6 +123,9 @@ impl Function {
                 return Err("ROUND of a number beyond 2147483647");
             }
             Self::Round | Self::RoundInteger => x.round(),
+            Self::RoundThousandth => (x * 1e3).round() / 1e3,
+            Self::RoundTenThousandth => (x * 1e4).round() / 1e4,
+            Self::RoundFeed => x.max(x.round()),
             Self::RoundUp => (x + 0.5).floor(),
             Self::Sin => libm::sin(x.to_radians()),
             Self::Sqrt if x < 0.0 => return Err("SQRT of a negative number"),

@@ -14,6 +14,7 @@ use super::terms::{Infix, Terms};
 use super::value::{
     FROM_KEPT, Held, KEPT, Name, PROBED, Read, Value, Variables, infix, passed_on, remedy, terms_of,
 };
+use gwatt_machine::InverseAngles;
 use gwatt_syntax::diagnostic::excerpt;
 
 /// Stands for a value that is not known, in an expression whose value is not used.
@@ -28,6 +29,12 @@ pub(crate) struct Reader<'t> {
     cursor: Cursor<'t>,
     /// What is worked out on the way, where that is wanted.
     pub(crate) tape: Tape,
+    /// What ROUND of Fanuc's macros does here.
+    pub(crate) round: Function,
+    /// An inverse function was used whose value depends on a setting that is not known.
+    pub(crate) unsure_angle: bool,
+    /// The place of one whose value differs by it.
+    pub(crate) unsure_angle_at: Option<usize>,
     /// Whether an unknown value is passed on instead of being an error.
     passes_on: bool,
     /// The first one that was, and the error that it would have been.
@@ -86,6 +93,9 @@ impl<'t> Reader<'t> {
         Self {
             cursor,
             tape: Tape::default(),
+            round: Function::Round,
+            unsure_angle: false,
+            unsure_angle_at: None,
             passes_on: false,
             unknown: None,
         }
@@ -420,9 +430,29 @@ impl<V: Variables> WithVariables<'_, '_, V> {
             (function, _) => Ok(function),
         };
         let result = function.and_then(|function| {
+            let function = self.as_set(function);
             self.reader.tape.push(Op::Of(function));
             function.apply(values)
         });
+        if fanuc && matches!(function, Ok(Function::Angle | Function::Asin)) {
+            let (_, is_known) = self.variables.inverse_angles();
+            self.reader.unsure_angle |= !is_known;
+            let differs = matches!(result, Ok(angle) if !(0.0..=180.0).contains(&angle));
+            if differs && !is_known {
+                self.reader.unsure_angle_at.get_or_insert(start);
+            }
+        }
         self.reader.worked_out(result, start)
+    }
+
+    /// The function as the place and the settings of a Fanuc have it.
+    fn as_set(&self, function: Function) -> Function {
+        let from_zero = self.variables.inverse_angles().0 == InverseAngles::FromZero;
+        match function {
+            Function::Round => self.reader.round,
+            Function::Angle if from_zero => Function::AngleFromZero,
+            Function::Asin if from_zero => Function::AsinFromZero,
+            function => function,
+        }
     }
 }

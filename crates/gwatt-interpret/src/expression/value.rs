@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use super::macro_terms::{MACRO_B, RS274};
 use super::operator::{Operator, truth};
 use super::terms::Terms;
+use gwatt_machine::InverseAngles;
 
 /// A value; `None` is Fanuc's null, a variable that was never given one.
 pub(crate) type Value = Option<f64>;
@@ -88,6 +89,8 @@ pub(crate) trait Variables {
     fn named(&self, name: &str) -> Read;
     /// Fanuc's rules for null, precedence and rounding; else those of RS274/NGC.
     fn fanuc(&self) -> bool;
+    /// What inverse functions of Fanuc's macros give, and whether the machine file says so.
+    fn inverse_angles(&self) -> (InverseAngles, bool);
 }
 
 /// The tables of the language that these parameters belong to.

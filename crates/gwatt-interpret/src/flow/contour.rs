@@ -1,5 +1,7 @@
 //! Reads the blocks of a contour for a turning cycle.
 
+use super::place::Place;
+use super::text::Search;
 use super::{Flow, FlowError};
 use crate::control::{Effects, HeldBlock};
 use crate::execute::Interpreter;
@@ -33,6 +35,9 @@ impl Flow {
         effects: &mut Effects<'_>,
     ) -> Result<(), FlowError> {
         let first = self.find_block(contour.first, self.next)?;
+        if contour.cycle == ContourCycle::Finish {
+            self.refuse_second_contour(contour.first, first)?;
+        }
         let before = interpreter.before_contour(contour);
         let errors = effects.diagnostics.errors;
         let mut found = Vec::new();
@@ -89,5 +94,24 @@ impl Flow {
         };
         interpreter.turn(contour, before, found, held, effects);
         Ok(())
+    }
+
+    /// A finishing cycle comes after its contour or before it: where two blocks have the number
+    /// of the first block, no document says which of them a control takes.
+    fn refuse_second_contour(&mut self, number: u64, found: Place) -> Result<(), FlowError> {
+        let Some(text) = self.texts.get_mut(found.text) else {
+            return Ok(());
+        };
+        let mut find = |search| text.find(&search, found.line);
+        let before = find(Search::FirstBlock(number)).filter(|line| *line != found.line);
+        let Some(other) = before.or_else(|| find(Search::NextBlock(number))) else {
+            return Ok(());
+        };
+        let (low, high) = (found.line.min(other) + 1, found.line.max(other) + 1);
+        let message = format!(
+            "N{number} stands in line {low} and in line {high}: which contour G70 takes is not known"
+        );
+        let help = "give the blocks of each contour numbers of their own";
+        Err(FlowError::new("contour", message, help))
     }
 }

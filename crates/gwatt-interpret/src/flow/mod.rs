@@ -256,6 +256,11 @@ impl Flow {
         let done = match transfer {
             Transfer::Structure { label, verb } => self.structure(label, verb, interpreter),
             Transfer::Call(call) => self.call(call, interpreter),
+            Transfer::ModalCall(Some(_)) if self.modal.is_some() => Err(FlowError::new(
+                "subprogram",
+                "a second G66 while one is in force: its macro would call the first one's",
+                "write G67 before it, or the calls out",
+            )),
             Transfer::ModalCall(call) => {
                 self.modal = call;
                 Ok(())

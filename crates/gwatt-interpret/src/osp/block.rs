@@ -38,6 +38,7 @@ impl Control<'_> {
         };
         let read = reading.read(block);
         let notes = reading.notes;
+        self.spindle.tool_rpm = state.tool_rpm;
         self.begun |= read.is_ok();
         self.take_reading(read, notes, block, report)
     }

@@ -26,6 +26,8 @@ pub(super) struct Osp {
     levels: Vec<Kept>,
     /// Those of the program that is called next.
     pending: Kept,
+    /// SB: the speed of the tool's own spindle, 1/min.
+    tool_rpm: f64,
     /// A program's name was read.
     begun: bool,
     /// Between DEF WORK and END: a drawing.

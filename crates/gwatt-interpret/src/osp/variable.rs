@@ -10,6 +10,9 @@ const PASSIVE: [&str; 9] = [
     "VGR", "VCHK", "VTSL", "VTSD", "VWKR", "VLMON", "VUACM", "VDOUT", "VTMNO",
 ];
 
+const TOOL_SPINDLE: &str = "what the tool's own spindle (SB) draws is not counted; feeds per \
+     revolution count at the faster of both spindles";
+
 /// What a name stands for.
 enum Name {
     Common(Ident),
@@ -105,6 +108,19 @@ impl Reading<'_, '_> {
         if matches!(&name, Name::Local(name) if name.as_str() == "HP") {
             let message = "HP, a home position (G20, G21), which is not followed";
             let help = "write the way there as a rapid";
+            return Err(self.cursor.fault("unsupported-word", message, help, start));
+        }
+        if matches!(&name, Name::Local(name) if name.as_str() == "SB") {
+            // "M-tool": feeds per revolution may follow it, or the workpiece's spindle.
+            self.cursor.at += 1;
+            self.state.tool_rpm = self.number()?.abs();
+            self.notes
+                .push(("other-spindle", TOOL_SPINDLE, self.cursor.span(start)));
+            return Ok(true);
+        }
+        if matches!(&name, Name::Local(name) if name.as_str() == "FA") {
+            let message = "FA, the feed of the way out of a bore, which is not followed";
+            let help = "write the cycle out as single blocks";
             return Err(self.cursor.fault("unsupported-word", message, help, start));
         }
         let (text, local) = match name {

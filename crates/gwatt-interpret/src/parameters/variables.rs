@@ -4,6 +4,7 @@ use super::{UNDER_COMPENSATION, is_tool};
 use crate::control::Control;
 use crate::expression::{KEPT, PROBED, Read, TOOL, Variables};
 use crate::rules::Macros;
+use gwatt_machine::InverseAngles;
 
 impl Variables for Control<'_> {
     fn numbered(&self, number: u32) -> Read {
@@ -60,5 +61,10 @@ impl Variables for Control<'_> {
 
     fn fanuc(&self) -> bool {
         self.rules.macros != Macros::OWords
+    }
+
+    fn inverse_angles(&self) -> (InverseAngles, bool) {
+        let dialect = &self.machine.controller.language.dialect;
+        (dialect.inverse_angles, dialect.inverse_angles_are_known)
     }
 }

@@ -28,7 +28,7 @@ impl Control<'_> {
                        with a straight line to the end";
         run.report.note_once("arc-end", message, whole);
         if self.printer.adjusts {
-            self.scale_extrusion(&mut end, AxisSet::default());
+            self.scale_extrusion(run, &mut end, AxisSet::default());
         }
         let from = [ends.start[0] - center[0], ends.start[1] - center[1]];
         let to = [ends.end[0] - center[0], ends.end[1] - center[1]];

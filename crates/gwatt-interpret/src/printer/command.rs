@@ -39,6 +39,7 @@ impl Control<'_> {
             let acts_early = self.machine.controller.language.printer.early_limits;
             let early = !pending.is_empty() && acts_early;
             let limits = early.then(|| self.knobs.clone());
+            let factors = [self.printer.feed_factor, self.printer.flow];
             let next = self.one_command(run, text, index > 0);
             let moves = |steps: &[Step]| steps.iter().any(|step| matches!(step, Step::Move(_)));
             // The firmware waits for the axes before it runs a file that may set limits.
@@ -48,6 +49,9 @@ impl Control<'_> {
                 for (limits, factor) in rises(self.machine, pending, &before, &self.knobs) {
                     run.act(ActionKind::EarlyLimits(limits), factor);
                 }
+            }
+            if early && !self.printer.stands {
+                self.early_factors(run, pending, factors);
             }
             let (earlier, own) = run.steps.split_at_checked(so_far).unwrap_or_default();
             if index > 0 && moves(own) && earlier.get(before..).is_some_and(moves) {

@@ -5,7 +5,7 @@ use super::line::{Parameters, has, value};
 use crate::control::{Control, Run};
 use gwatt_machine::units::SECONDS_PER_MINUTE;
 use gwatt_machine::{AxisId, CornerRule};
-use gwatt_motion::{Corner, SpeedSteps, Square};
+use gwatt_motion::{ActionKind, Corner, EarlyLimits, SpeedSteps, Square};
 use gwatt_syntax::source::Span;
 
 /// Values of M205 J that Marlin takes, mm.
@@ -118,10 +118,9 @@ impl Control<'_> {
         });
         let early = self.machine.controller.language.printer.early_limits;
         if early && before != self.knobs.corner && !self.printer.stands {
-            let message = "jerk that is set while axes may move may hold for corners of moves that \
-                           wait in the queue already: that is not followed, and higher values draw \
-                           more there";
-            run.report.note_once("corner-speeds", message, span);
+            // Corners of moves that wait are worked out again as further moves come
+            // (DDA::MatchSpeeds).
+            run.act(ActionKind::EarlyLimits(EarlyLimits::Corners), 1.0);
         }
     }
 

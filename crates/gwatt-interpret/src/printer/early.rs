@@ -1,9 +1,9 @@
 //! Limits that may act on the move before them, while that waits for the queue (RepRapFirmware).
 
-use crate::control::Control;
+use crate::control::{Control, Run};
 use crate::knob::KnobState;
 use gwatt_machine::{AxisSet, Machine};
-use gwatt_motion::EarlyLimits;
+use gwatt_motion::{ActionKind, EarlyLimits};
 
 impl Control<'_> {
     /// The axes of a move that may wait for the queue while the next line is read; after an arc
@@ -17,6 +17,30 @@ impl Control<'_> {
         match chord_mm {
             Some(chord_mm) if is_arc && length_mm > 2.0 * chord_mm => AxisSet::default(),
             _ => moving,
+        }
+    }
+}
+
+impl Control<'_> {
+    /// M220 and M221 change the move that waits, unless it is one of the extruder alone
+    /// (GCodes2.cpp, case 220; RawMove.cpp). `before`: the factors of feed and filament.
+    pub(super) fn early_factors(
+        &self,
+        run: &mut Run<'_, '_>,
+        pending: AxisSet,
+        [feed, flow]: [f64; 2],
+    ) {
+        let spares = self.machine.controller.language.printer.feed_factor_spares;
+        if pending.0 & !spares.0 == 0 {
+            return;
+        }
+        for (limits, factor) in [
+            (EarlyLimits::Feed, self.printer.feed_factor / feed),
+            (EarlyLimits::Filament, self.printer.flow / flow),
+        ] {
+            if factor != 1.0 {
+                run.act(ActionKind::EarlyLimits(limits), factor.max(1.0));
+            }
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use super::Course;
 use crate::control::{Control, Run};
+use crate::letters::bit;
 use crate::places::EXTRUDER;
-use gwatt_machine::{AxisSet, AxisValues};
+use gwatt_machine::{ALL_AXES, AxisSet, AxisValues};
 
 /// X and Y, which Klipper's velocity limit speaks for.
 const XY: u16 = 0b11;
@@ -32,8 +33,7 @@ impl Control<'_> {
     /// The feed of a move before the program's limits, mm/s, of which F asks for `feed_mm_s`.
     fn printer_feed(&self, run: &mut Run<'_, '_>, course: &Course<'_>, feed_mm_s: f64) -> f64 {
         let state = &self.printer;
-        let spares = self.machine.controller.language.printer.feed_factor_spares;
-        let spared = course.commanded.0 & !spares.0 == 0;
+        let spared = self.is_spared(run, course.commanded);
         let factor = if spared { 1.0 } else { state.feed_factor };
         let feed = feed_mm_s * factor;
         if state.feed_factor != 1.0 {
@@ -41,6 +41,17 @@ impl Control<'_> {
         }
         let extrudes = course.commanded.contains(EXTRUDER);
         feed.max(state.least_mm_s[usize::from(!extrudes)])
+    }
+
+    /// Whether M220 leaves a move alone, and M221: it names none of the axes that they are for
+    /// (RepRapFirmware, GCodes.cpp, `applyM220M221`).
+    fn is_spared(&self, run: &Run<'_, '_>, moving: AxisSet) -> bool {
+        let spares = self.machine.controller.language.printer.feed_factor_spares;
+        let others = ALL_AXES
+            .iter()
+            .filter(|axis| !spares.contains(**axis as usize));
+        let named = others.fold(0, |bits, axis| bits | bit(axis.letter()));
+        moving.0 & !spares.0 == 0 && run.words.present & named == 0
     }
 
     /// A speed along the path, mm/s, under the limits that the program has set.
@@ -103,8 +114,15 @@ impl Control<'_> {
 
     /// M221 and M200: of what E names, the extruder moves more or less; E
     /// itself counts on as it is written.
-    pub(crate) fn scale_extrusion(&mut self, end: &mut AxisValues, unknown: AxisSet) {
-        let factor = self.printer.flow * self.printer.volumetric;
+    pub(crate) fn scale_extrusion(
+        &mut self,
+        run: &Run<'_, '_>,
+        end: &mut AxisValues,
+        unknown: AxisSet,
+    ) {
+        let spared = self.is_spared(run, AxisSet::default());
+        let flow = if spared { 1.0 } else { self.printer.flow };
+        let factor = flow * self.printer.volumetric;
         if factor == 1.0 || unknown.contains(EXTRUDER) {
             return;
         }

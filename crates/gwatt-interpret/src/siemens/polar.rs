@@ -38,9 +38,12 @@ impl Control<'_> {
             _ => state.polar.pole,
         };
         let mut pole = base;
+        // Places of X like others: under DIAMON they are diameters, under DIAM90 those of G111.
+        let halves = state.in_diameters() && !(state.radius_increments && which != 1);
         for (axis, value) in run.words.axes() {
             if let Some(slot) = pole.get_mut(axis) {
-                *slot += value * self.unit_of(axis);
+                let share = if axis == 0 && halves { 0.5 } else { 1.0 };
+                *slot += value * self.unit_of(axis) * share;
             }
         }
         run.words.unused &= !AXIS_LETTERS;

@@ -3,7 +3,7 @@
 use super::trace::{For, Target};
 use super::{ASSIGNMENTS_MAX, Statement, Unread, program_name};
 use crate::control::Control;
-use crate::expression::{Fault, Reader, Variables};
+use crate::expression::{Fault, Function, Reader, Variables};
 use crate::rules::Macros;
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, IssueKind, Word};
@@ -113,6 +113,9 @@ impl Control<'_> {
             block.words_end = reader.at as u32;
         }
         block.issues.clear();
+        let angle = reader.unsure_angle_at;
+        statement.unsure_angle = angle.map(|start| Span::new(start, reader.at));
+        statement.recorder.lost |= reader.unsure_angle;
         if record {
             let untold = statement.callee.is_some()
                 || statement.corner.is_some()
@@ -162,6 +165,20 @@ impl Control<'_> {
         }
     }
 
+    /// ROUND in the value of a word: to the last decimal of its address (B-64484EN, "Arithmetic
+    /// and logic operation"; Haas 96-8000, "Notes on functions").
+    fn rounding(&self, letter: u8) -> Function {
+        match letter {
+            b'A'..=b'C' => Function::RoundThousandth,
+            b'I'..=b'K' | b'Q' | b'R' | b'U'..=b'Z' if self.modal.mm_per_unit == 1.0 => {
+                Function::RoundThousandth
+            }
+            b'I'..=b'K' | b'Q' | b'R' | b'U'..=b'Z' => Function::RoundTenThousandth,
+            b'E' | b'F' => Function::RoundFeed,
+            _ => Function::Round,
+        }
+    }
+
     /// A letter with its value.
     fn word(
         &self,
@@ -177,7 +194,10 @@ impl Control<'_> {
         reader.peek();
         let number = reader.at;
         let before = reader.at;
-        let value = match reader.value(self) {
+        reader.round = self.rounding(letter);
+        let value = reader.value(self);
+        reader.round = Function::Round;
+        let value = match value {
             Ok(value) => value,
             Err(fault) if fault.rule == "expression" && fault.span.start as usize == before => {
                 return Err(Unread::Foreign);

@@ -33,6 +33,8 @@ pub(super) struct Statement<'t> {
     pub(super) corner: Option<Word>,
     /// An alarm whose condition nobody knows.
     pub(super) alarm: Option<Span>,
+    /// A setting of the control decides the value of an inverse function.
+    pub(super) unsure_angle: Option<Span>,
     recorder: Recorder,
     /// How it was read, if that is recorded.
     pub(super) trace: Option<Box<Trace>>,

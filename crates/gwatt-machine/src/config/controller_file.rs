@@ -7,8 +7,9 @@ use super::look_ahead::LookAheadTable;
 use super::printer_table::PrinterTable;
 use super::value::{At, NotNegative, Positive};
 use crate::controller::{
-    ArcRule, ArcWithoutCenter, CompensationCorner, CompensationLead, Lathe, PathMode, Point,
-    PowerOnMotion, RapidJoint, RapidPath, SpindleWait, TapFeed, ToolChange, TypeTwo,
+    ArcRule, ArcWithoutCenter, CompensationCorner, CompensationLead, InverseAngles, Lathe,
+    PathMode, Point, PowerOnMotion, RapidJoint, RapidPath, SpindleWait, TapFeed, ToolChange,
+    TypeTwo,
 };
 use crate::family::Family;
 use crate::knob::{KnobTarget, KnobUnit};
@@ -101,6 +102,8 @@ pub(crate) struct LanguageTable {
     /// What F of G74 and G84 of a mill is: as any feed (per minute under G94), the pitch, or one
     /// of them as a parameter of the control says; default: as any feed.
     pub(crate) tap_feed: Option<TapFeed>,
+    /// What ATAN\[…\]/\[…\] and ASIN\[…\] of macros give; default: signed.
+    pub(crate) inverse_angles: Option<InverseAngles>,
     /// Whether D and H in a block of a canned cycle are words of the cycle, not offsets of
     /// tools; default false.
     pub(crate) cycles_take_d_and_h: Option<bool>,
@@ -154,6 +157,9 @@ pub(crate) struct LanguageTable {
     /// Whether G81 to G89 of a lathe all drill along Z, from the place R, as on a Haas; default
     /// false: G83 to G85 along Z and G87 to G89 along X, R being a distance.
     pub(crate) holes_along_z: Option<bool>,
+    /// Whether G87 of a mill bores and stops, and the operator takes the tool out; default false:
+    /// it bores from below.
+    pub(crate) bores_by_hand: Option<bool>,
     /// Whether G28 without axes moves all of them; default false.
     pub(crate) g28_all: Option<bool>,
     /// The word of M98 that names the block to begin at, of the program that is called, or

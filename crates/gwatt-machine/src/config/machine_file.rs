@@ -10,7 +10,7 @@ use serde::Deserialize;
 pub(crate) use super::axis_table::{
     AxisTable, CorrectionTable, ForcePointTable, ResponseTable, RootTable, TorquePointTable,
 };
-use super::controller_file::{CompensationTable, DistanceName, UnitsName};
+use super::controller_file::{CompensationTable, DistanceName, FeedName, UnitsName};
 use super::levels::LevelsTable;
 use super::look_ahead::LookAheadTable;
 use super::offsets::OffsetsTable;
@@ -21,7 +21,8 @@ use super::value::{
     RapidPercent, ResponseTime, Share,
 };
 use crate::controller::{
-    ArcWithoutCenter, PathMode, Point, PowerOnMotion, RapidPath, TapFeed, ToolChange, TypeTwo,
+    ArcWithoutCenter, InverseAngles, PathMode, Point, PowerOnMotion, RapidPath, TapFeed,
+    ToolChange, TypeTwo,
 };
 
 /// A machine whose drives share a power converter.
@@ -196,6 +197,9 @@ pub(crate) struct OwnLanguageTable {
     pub(crate) decimal_point: Option<Point>,
     /// Whether words of X are diameters.
     pub(crate) diameter: Option<bool>,
+    /// What F means at power-on, before a G word of the program says so (SINUMERIK: machine data
+    /// 20150\[14\]).
+    pub(crate) feed: Option<FeedName>,
     /// The motion word in force at power-on (Fanuc: parameter 3402 bit G01; SINUMERIK: machine
     /// data 20150).
     pub(crate) power_on_motion: Option<PowerOnMotion>,
@@ -234,6 +238,9 @@ pub(crate) struct OwnLanguageTable {
     /// What F of G74 and G84 of a mill is where the program does not say so (Mitsubishi: #8159;
     /// Mazak: F94 bit 6); default: as the profile says.
     pub(crate) tap_feed: Option<TapFeed>,
+    /// What ATAN\[…\]/\[…\] and ASIN\[…\] of macros give for negative angles (Fanuc: parameter
+    /// 6004 bit NAT).
+    pub(crate) inverse_angles: Option<InverseAngles>,
     /// How G41 and G42 shift the path.
     pub(crate) cutter_compensation: Option<CompensationTable>,
     /// G and M words that move no axis and raise no limit on this machine, besides those of

@@ -1,7 +1,7 @@
 //! `[language]` of a machine file: how this machine's programs are written, where that is
 //! not as in the controller profile.
 
-use super::controller_file::{DistanceName, UnitsName};
+use super::controller_file::{DistanceName, FeedName, UnitsName};
 use super::findings::Findings;
 use super::machine_file::OwnLanguageTable;
 use super::value::{At, NotNegative};
@@ -21,6 +21,11 @@ pub(crate) fn take(
     dialect.point = own.decimal_point.or(dialect.point);
     dialect.point_is_known = own.decimal_point.is_some();
     dialect.diameter = own.diameter.unwrap_or(dialect.diameter);
+    dialect.inverse_angles = own.inverse_angles.unwrap_or(dialect.inverse_angles);
+    dialect.inverse_angles_are_known = own.inverse_angles.is_some();
+    if let Some(feed) = own.feed {
+        dialect.per_revolution = Some(feed == FeedName::PerRevolution);
+    }
     language.tool_change = own.tool_change.or(language.tool_change);
     if let Some(axes) = &own.tool_change_moves {
         language.tool_change_moves = Some(listed_words::axes_named(findings, axes));

@@ -43,6 +43,9 @@ pub(crate) fn printer(findings: &mut Findings<'_>, language: &LanguageTable) -> 
         },
         limits_in_mm: table.limits_in_mm.unwrap_or(own.limits_in_mm),
         velocity_limit: table.velocity_limit.unwrap_or(own.velocity_limit),
+        drawing_back_travels: table
+            .drawing_back_travels
+            .unwrap_or(own.drawing_back_travels),
         retract_by_path: table.retract_by_path.unwrap_or(own.retract_by_path),
         feed_factor_spares: table
             .feed_factor_spares

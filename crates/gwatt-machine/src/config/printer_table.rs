@@ -30,6 +30,9 @@ pub(crate) struct PrinterTable {
     /// Axes that M204's P, T and S do not limit when no other axis moves;
     /// default the extruder.
     pub(crate) path_accel_spares: Option<Vec<At<Letter>>>,
+    /// Whether moves of other axes that draw the filament back go as those that do not print (M204
+    /// T); default false: as all that move the extruder.
+    pub(crate) drawing_back_travels: Option<bool>,
     /// Whether M204 R takes the place of the extruder's own limit (M201) in moves of it alone;
     /// default false: both count.
     pub(crate) retract_by_path: Option<bool>,

@@ -154,9 +154,12 @@ fn dialect(table: &LanguageTable) -> Dialect {
         osp: table.osp.unwrap_or(false),
         other_m: table.other_m.unwrap_or(false),
         semicolon_ends_block: table.semicolon_ends_block.unwrap_or(false),
-        per_revolution: table.feed == Some(FeedName::PerRevolution),
+        per_revolution: table.feed.map(|feed| feed == FeedName::PerRevolution),
+        inverse_angles: table.inverse_angles.unwrap_or_default(),
+        inverse_angles_are_known: false,
         circular_pocket: table.circular_pocket.unwrap_or(false),
         holes_along_z: table.holes_along_z.unwrap_or(false),
+        bores_by_hand: table.bores_by_hand.unwrap_or(false),
         g28_all: table.g28_all.unwrap_or(false),
         call_block: table.call_block.map(|name| match name {
             CallBlockName::Q => b'Q',

@@ -11,10 +11,11 @@ mod jerk;
 
 use super::rounding::{EXTRUDER, UNIT};
 use jerk::JerkJoint;
-use std::f64::consts::{FRAC_PI_4, SQRT_2};
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use super::element::{Element, Joint};
 use super::passage::{Kind, Passage, kind};
+use super::turn::angle_at_least;
 use gwatt_machine::{AXES, AxisValues, CornerAngle, CornerRule};
 
 /// Cosines beyond this are no corner, or a reversal.
@@ -338,10 +339,13 @@ impl<T> Corner<'_, T> {
         if cos > STRAIGHT {
             return 0.0;
         }
-        if cos < -STRAIGHT {
+        let after = self.after;
+        let chords = after.length_mm < self.small_block_mm;
+        if cos < -STRAIGHT && !chords {
             return f64::INFINITY;
         }
-        let after = self.after;
+        // Marlin takes what is straighter for this straight.
+        let cos = cos.max(-STRAIGHT);
         let accel = if self.per_axis {
             let mut change = [0.0; AXES];
             for (i, value) in change.iter_mut().enumerate().take(self.axes) {
@@ -359,11 +363,8 @@ impl<T> Corner<'_, T> {
         let s = (0.5 * (1.0 - cos)).sqrt();
         let mut v2 = accel * self.deviation_mm * s / (1.0 - s);
         // Chords of a circle: radius = length / turn.
-        if after.length_mm < self.small_block_mm && cos < -std::f64::consts::FRAC_1_SQRT_2 {
-            let turn = libm::acos(-cos);
-            if turn < FRAC_PI_4 {
-                v2 = v2.min(accel * after.length_mm / turn);
-            }
+        if chords && cos < -FRAC_1_SQRT_2 {
+            v2 = v2.min(accel * after.length_mm / angle_at_least(-cos));
         }
         v2
     }

@@ -19,6 +19,7 @@ mod planner;
 mod pieces;
 mod ramp;
 mod runs;
+mod turn;
 mod vector;
 mod window;
 mod node;

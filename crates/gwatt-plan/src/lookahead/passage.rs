@@ -8,6 +8,9 @@ use super::line::Line;
 use super::rounding::{EXTRUDER, ROUNDING, UNIT};
 use gwatt_machine::{CornerAngle, CornerRule};
 
+/// What a turn is at least where chords make it, as 1 less its cosine: see `turn`.
+const LEAST_TURN: f64 = 1e-6 + 2.0 * UNIT;
+
 /// What rounding may make of a cosine.
 const COSINE: f64 = 1e-15;
 
@@ -74,15 +77,16 @@ pub(super) fn permits(rule: &CornerRule, before: &Line, after: &Line, speed_mm_s
     }
 }
 
-/// Whether a move in this direction prints, and whether its extruder moves otherwise.
-pub(super) type Kind = [bool; 2];
+/// Whether a move in this direction prints, whether its extruder moves otherwise, and whether X or Y
+/// move (RepRapFirmware, DDA.cpp, `InitStandardMove`).
+pub(super) type Kind = [bool; 3];
 
 /// That of a move: it prints where the extruder feeds while X or Y move.
 #[inline]
 pub(super) fn kind(direction: &[f64], extruder: f64) -> Kind {
     let moves = direction.iter().take(2).any(|change| *change != 0.0);
     let prints = moves && extruder > 0.0;
-    [prints, extruder != 0.0 && !prints]
+    [prints, extruder != 0.0 && !prints, moves]
 }
 
 /// A joint that is to be passed at a speed.
@@ -108,6 +112,6 @@ impl Passage {
         let turns = self.accel_mm_s2 * self.length_mm;
         c > 0.0
             && 0.5 * (1.0 + c) * (1.0 - ROUNDING) >= s * s
-            && (!chords || 0.47 * turns * turns >= speed2 * speed2 * (1.0 - c + 2.0 * UNIT))
+            && (!chords || 0.47 * turns * turns >= speed2 * speed2 * (1.0 - c + LEAST_TURN))
     }
 }

@@ -240,6 +240,8 @@ impl<T: Copy> PathPlanner<T> {
         }
         if node.entry2 == 0.0 {
             self.window.stop();
+            // Up to 2.1.2 Marlin begins at rest and accelerates, later at that speed.
+            node.payload.certain &= node.step2 == 0.0 || node.step2 < node.top2;
         }
         node.payload.slack.joint2 = node.entry2;
         if let Some(finer) = finer {

@@ -43,7 +43,8 @@ impl Ahead {
                 self.open.pass();
                 continue;
             }
-            if first + 1 >= finished && !self.at_rest {
+            if (first + 1 >= finished || self.open.end() - first <= self.held_back) && !self.at_rest
+            {
                 return;
             }
             let moves = |number: &u64| self.open.get(*number).is_some_and(|open| open.moves);

@@ -35,7 +35,7 @@ use super::parabolic_blend::Ride;
 use super::robust::Extremes;
 use super::steps::Steps;
 use constant_speed::Glider;
-use gwatt_machine::{AXES, AxisValues, LookAhead, Machine, PathMode};
+use gwatt_machine::{AXES, AxisId, AxisValues, CornerRule, LookAhead, Machine, PathMode};
 use gwatt_motion::{EarlyLimits, Move, MoveKind};
 use gwatt_plan::Overrides;
 use gwatt_plan::lookahead::{Element, PathPlanner};
@@ -62,6 +62,9 @@ pub(super) struct Ahead {
     nominal: Option<Side>,
     /// Moves that are not passed on.
     open: Queue,
+    /// As many of the last moves are not passed on while they may move: other corners may be set
+    /// for them yet.
+    held_back: u64,
     /// Nothing moves after the last move.
     at_rest: bool,
     /// Something stands after the last move that may or may not stop it.
@@ -115,6 +118,19 @@ impl Side {
     }
 }
 
+/// How many moves wait in a queue where words for corners hold for them too.
+fn held_back(machine: &Machine, rules: &LookAhead) -> u64 {
+    let early = machine.controller.language.printer.early_limits;
+    match rules.corner {
+        CornerRule::SpeedStep { .. } if early => {
+            let seen = rules.blocks_at_most.max(rules.blocks);
+            // Another one waits for room in the queue.
+            seen.map_or(0, |blocks| u64::from(blocks) + 1)
+        }
+        _ => 0,
+    }
+}
+
 impl Ahead {
     /// Nothing moves yet. `overrides`: the largest, and 100 % or what is
     /// permitted of it.
@@ -129,8 +145,9 @@ impl Ahead {
             last_ride: None,
         });
         let alike = largest.overrides == nominal.overrides;
-        // What is decided for another override does not glide.
-        let blocks = if alike && largest.overrides.feed >= most_feed {
+        let held_back = held_back(machine, &rules);
+        // What is decided for another override does not glide, nor what may change later.
+        let blocks = if alike && largest.overrides.feed >= most_feed && held_back == 0 {
             largest.planner.glide_blocks()
         } else {
             0
@@ -140,6 +157,7 @@ impl Ahead {
             largest,
             nominal: (!alike).then_some(nominal),
             open: Queue::new(),
+            held_back,
             at_rest: true,
             in_doubt: false,
             reach2: None,
@@ -333,9 +351,23 @@ impl Ahead {
         }
         self.doubt();
         self.brake_in_doubt(model, observer);
+        if limits == EarlyLimits::Corners {
+            // What is not certain counts with any speed at its corners.
+            return self.doubt_from(self.open.first());
+        }
         if let Some(last) = self.open.back_mut() {
             let mut early = last.at_most().clone();
             match limits {
+                EarlyLimits::Corners => {}
+                EarlyLimits::Feed => {
+                    let excess = std::mem::replace(&mut early.feed_excess, 1.0);
+                    early.feed_mm_s *= factor * excess;
+                }
+                EarlyLimits::Filament => {
+                    let extruder = AxisId::E as usize;
+                    let way_mm = early.end[extruder] - early.start[extruder];
+                    early.end[extruder] = early.start[extruder] + factor * way_mm;
+                }
                 EarlyLimits::AxisAccel => {
                     early.accel_mm_s2 = early.accel_mm_s2.map(|limit| factor * limit);
                 }
@@ -353,8 +385,12 @@ impl Ahead {
     fn brake_in_doubt(&mut self, model: &PowerModel, observer: &mut Observer) {
         self.largest.planner.settle();
         self.pump(model, observer);
-        let unfinished = self.largest.next.max(self.open.first());
-        for number in unfinished..self.open.end() {
+        self.doubt_from(self.largest.next.max(self.open.first()));
+    }
+
+    /// The moves from this one on are in doubt.
+    fn doubt_from(&mut self, first: u64) {
+        for number in first..self.open.end() {
             if let Some(open) = self.open.get_mut(number) {
                 open.certain = false;
             }

@@ -1,0 +1,182 @@
+//! What a setting of the control decides, or a word of its own: each counts higher, is followed
+//! with a note, or is refused.
+//!
+//! Sources: Fanuc B-64304EN ("Arithmetic and logic operation", "Modal call", "Programmable data
+//! input"), Haas mill operator's manual 96-8000, SINUMERIK "Fundamentals".
+
+use insta::assert_snapshot;
+
+use crate::fanuc::{moves, notes};
+use crate::listing::{listing, machine, machine_of, refusals};
+
+fn on_lathe(more: &str, program: &str) -> String {
+    listing(program, &machine_of("siemens", more, "XZ", ""), None)
+}
+
+const TURNS: &str = "G18 G90 DIAMON\nS1000 M3\nG0 X50 Z2\nG1 Z-20 F0.2\n";
+
+/// MD20150: a lathe may begin in G94 or in G95, the faster by far.
+#[test]
+fn a_lathe_of_sinumerik_counts_feeds_per_revolution() {
+    assert_snapshot!(on_lathe("", TURNS), @r"
+    3 rapid X25 Z2
+    4 feed Z-20 F200
+    ");
+    let per_minute = "[language]\nfeed = \"per-minute\"\n";
+    assert_snapshot!(on_lathe(per_minute, TURNS), @r"
+    3 rapid X25 Z2
+    4 feed Z-20 F0.2
+    ");
+    let said = TURNS.replace("G90", "G90 G94");
+    assert_eq!(on_lathe("", &said), on_lathe(per_minute, TURNS));
+    let without_speed = "G18 G90 DIAMON\nG0 X50 Z2\nG1 Z-20 F0.2\n";
+    assert_snapshot!(on_lathe("", without_speed), @r"
+    2 rapid X25 Z2
+    3 feed Z-20
+    ");
+}
+
+/// Mills begin in G94.
+#[test]
+fn a_mill_of_sinumerik_counts_feeds_per_minute() {
+    let mill = machine("siemens");
+    assert_snapshot!(listing("S1000 M3\nG1 X20 F200\n", &mill, None), @r"
+    2 feed X20 F200
+    ");
+}
+
+/// "Reference point of the polar coordinates (G110, G111, G112)": of X a diameter under DIAMON.
+#[test]
+fn the_pole_of_a_lathe_is_a_diameter() {
+    let program = "G18 G90 G95 DIAMON\nS1000 M3\nG0 X0 Z0\nG111 X40 Z0\nG1 AP=90 RP=10 F0.1\n\
+                   G110 X10 Z0\nG1 AP=90 RP=5\n";
+    assert_snapshot!(on_lathe("", program), @r"
+    3 rapid
+    5 feed X30 F100
+    7 feed X40 F100
+    ");
+}
+
+/// B-64304EN, "ROUND function": in an address to the least input increment.
+#[test]
+fn round_in_an_address_keeps_its_decimals() {
+    let program = "G21 G90 G94\n#1=1.2345\n#2=2.3456\nG0 X0\nG91 G0 X-#1\nG1 X-#2 F100\n\
+                   G0 X[ROUND[#1]+ROUND[#2]]\n#3=ROUND[#2]\nG0 X#3\nG20 G0 X[ROUND[#1]]\n\
+                   G1 X1. F[ROUND[0.2]]\n";
+    assert_snapshot!(moves("fanuc", program), @r"
+    4 rapid
+    5 rapid X-1.2345
+    6 feed X-3.5801 F100.0000
+    7 rapid X0.0009
+    9 rapid X2.0009
+    10 rapid X33.3699
+    11 feed X58.7699 F5.0800
+    ");
+}
+
+/// B-64304EN, parameter 6004 bit NAT.
+#[test]
+fn inverse_functions_give_what_a_parameter_says() {
+    let program =
+        "G21 G90\n#1=ATAN[-1.]/[-1.]\nG0 X#1\n#2=ASIN[-0.5]\nX#2\n#3=ATAN[1.]/[1.]\nX#3\n";
+    assert_snapshot!(moves("fanuc", program), @r"
+    3 rapid X225.0000
+    5 rapid X330.0000
+    7 rapid X45.0000
+    ");
+    assert_eq!(notes("fanuc", program), ["inverse-angle"]);
+    let signed = machine_of(
+        "fanuc",
+        "[language]\ninverse_angles = \"signed\"\n",
+        "XYZ",
+        "",
+    );
+    assert_snapshot!(listing(program, &signed, None), @r"
+    3 rapid X-135
+    5 rapid X-30
+    7 rapid X45
+    ");
+    // Nothing depends on it.
+    let positive = "G21 G90\n#1=ATAN[1.]/[-1.]\nG0 X#1\n";
+    assert!(!notes("fanuc", positive).contains(&"inverse-angle"));
+    assert_eq!(notes("mazak", program), ["inverse-angle"]);
+}
+
+/// "Modal call nesting": the macro of the second would call that of the first.
+#[test]
+fn modal_calls_in_each_other() {
+    let program = "G66 P400 A1.\nG66 P400 A2.\nG0 X10.\nG67\nM30\nO400\nG0 Z#1\nM99\n";
+    assert_snapshot!(moves("fanuc", program), @r"
+    2 subprogram: a second G66 while one is in force: its macro would call the first one's
+    ");
+    let after = program.replacen("\nG66", "\nG67\nG66", 1);
+    assert_snapshot!(moves("fanuc", &after), @r"
+    4 rapid X10.0000
+    8 rapid Z2.0000
+    ");
+}
+
+/// No document says which of two blocks of one number G70 goes back to.
+#[test]
+fn contours_of_one_number() {
+    let contour = |x: u32| {
+        format!(
+            "G0 X60. Z2.\nG71 U2. R1.\nG71 P10 Q20 U0.4 W0.1 F0.2\nN10 G0 X{x}.\nG1 Z-20.\nN20 X60.\n"
+        )
+    };
+    let finish = "G70 P10 Q20\n";
+    let start = "G97 S500 M3\n";
+    let twice = format!("{start}{}{finish}{}", contour(40), contour(30));
+    assert_snapshot!(moves("fanuc-lathe", &twice), @r"
+    8 contour: N10 stands in line 5 and in line 12: which contour G70 takes is not known
+    ");
+    let once = format!("{start}{}{finish}", contour(40));
+    assert!(moves("fanuc-lathe", &once).contains("feed"));
+}
+
+/// P0 is no tool: it moves the coordinate system.
+#[test]
+fn a_shift_by_g10() {
+    assert_snapshot!(moves("fanuc-lathe", "G10 P0 X-2. Z1.\nG0 X10.\n"), @r"
+    1 data-setting: G10 P0 shifts the workpiece coordinate system, which is not followed
+    ");
+}
+
+/// S of M19 is an angle.
+#[test]
+fn an_oriented_spindle_makes_no_feed_slower() {
+    assert_snapshot!(moves("fanuc", "G95 S1000 M3\nM19 S90\nG1 X10. F0.2\n"), @r"
+    3 feed X10.0000 F200.0000
+    ");
+}
+
+/// SB turns the tool of a lathe, and feeds per revolution may follow it.
+#[test]
+fn the_tool_of_a_lathe_has_its_own_spindle() {
+    let lathe = machine_of("okuma-lathe", "", "XZ", "C");
+    let program = "G97 S500 M3\nG0 X40 Z2\nSB=3000 M13\nG95 G1 Z-5 F0.2\nSB=100\nZ-9\n";
+    assert_snapshot!(listing(program, &lathe, None), @r"
+    2 rapid X20 Z2
+    4 feed Z-5 F600
+    6 feed Z-9 F100
+    ");
+    let mill = machine("okuma");
+    let bore = "G15 H1\nG71 Z50\nS500 M3\nG85 X10 Y10 R3 Z-10 F100 FA=500 M53\n";
+    assert_snapshot!(refusals(bore, &mill), @r"
+    4 unsupported-word: FA, the feed of the way out of a bore, which is not followed
+    ");
+}
+
+/// "G87 Bore In and Manual Retract": back to the level where the cycle ends, from wherever the
+/// operator has stopped.
+#[test]
+fn a_bore_that_the_operator_leaves() {
+    let program = "G21 G90 G94 S500 M3\nG0 X0. Y0. Z10.\nG99 G87 X15. Z-5. R2. F250.\nG80\n";
+    assert_snapshot!(moves("haas", program), @r"
+    2 rapid Z10.0000
+    3 rapid X15.0000
+    3 rapid Z2.0000
+    3 feed Z-5.0000 F250.0000
+    3 rapid
+    ");
+}
