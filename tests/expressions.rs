@@ -150,14 +150,21 @@ fn functions() {
                 ("[EXP[0]]", 1.0),
                 ("[LN[EXP[2]]]", 2.0),
                 ("[SQRT[16]]", 4.0),
-                ("[ROUND[2.5]]", 3.0),
-                ("[ROUND[-2.5]]", -3.0),
                 ("[FIX[2.8]]", 2.0),
                 ("[FUP[2.2]]", 3.0),
                 ("-SIN[90]", -1.0),
             ],
         );
     }
+    near(
+        "linuxcnc",
+        &[("[ROUND[2.5]]", 3.0), ("[ROUND[-2.5]]", -3.0)],
+    );
+    // In an address to its last decimal.
+    near(
+        "iso",
+        &[("[ROUND[2.5]]", 2.5), ("[ROUND[-2.5006]]", -2.501)],
+    );
     // Down and up; Fanuc: to zero and away from it.
     near("linuxcnc", &[("[FIX[-2.8]]", -3.0), ("[FUP[-2.2]]", -2.0)]);
     near("iso", &[("[FIX[-2.8]]", -2.0), ("[FUP[-2.2]]", -3.0)]);
@@ -171,7 +178,7 @@ fn functions() {
             ("[ASN[1]]", 90.0),
             ("[ACS[0]]", 90.0),
             ("[ATN[1]]", 45.0),
-            ("[RND[1.5]]", 2.0),
+            ("[RND[1.5006]]", 1.501),
         ],
     );
 }

@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 use gwatt::diagnostic::Diagnostic;
 use gwatt::machine::Machine;
-use gwatt::pipeline::{Options, moves};
+use gwatt::pipeline::{LimitOptions, Options, limit, moves};
 use gwatt::power::Certificate;
 
 use crate::machines::{linear_axes, machine_from};
@@ -127,4 +127,61 @@ fn only_controls_that_have_it() {
     let found = Machine::from_toml("test.toml", text).expect_err("no laser mode");
     let says = |it: &Diagnostic| it.message == "controller \"fanuc\" has no laser mode";
     assert!(found.iter().any(says), "{found:?}");
+}
+
+/// grbl's beam is off in G0 and burns along a feed: a rapid stays one while it is lit.
+#[test]
+fn rapids_stay_rapids_while_a_laser_is_lit() {
+    let limited = |laser_mode: &str, program: &str| {
+        let machine = machine_from(&format!(
+            "schema = 1\nname = \"test\"\ncontroller = \"grbl\"\n[path]\n{laser_mode}\n\
+             [converter]\npeak_power_w = 1\n{}",
+            linear_axes("XYZ", [12000.0, 500.0, 10.0], "")
+        ));
+        let input = Cursor::new(program.as_bytes());
+        let how = LimitOptions::default();
+        let mut text = Vec::new();
+        let found = limit(input, &machine, &Options::default(), how, &mut text, None);
+        let found = found.expect("read");
+        let reasons = found.reasons.iter().map(|reason| reason.message.clone());
+        (found.certified, reasons.collect::<String>())
+    };
+    let lit = "G21 G90\nM4 S1000\nG1 X5 F500\nG0 X80 Y60\nG1 X81\nM5\nM30\n";
+    let dark = lit.replace("G0 X80 Y60", "G0 X80 Y60 S0");
+    let constant = lit.replace("M4 S1000\nG1 X5", "M3\nG1 S1000 X5");
+    let spindle = lit.replace("M4", "M3");
+    let [on, off, unknown] = ["laser_mode = true", "laser_mode = false", ""];
+    for (mode, program, is_refused) in [
+        (on, lit, true),
+        (unknown, lit, true),
+        (unknown, &constant, true),
+        (on, &spindle, true),
+        (on, &dark, false),
+        (off, lit, false),
+        (unknown, &spindle, false),
+    ] {
+        let (certified, reasons) = limited(mode, program);
+        assert_eq!(certified, !is_refused, "{mode} {program} {reasons}");
+        assert_eq!(reasons.contains("the laser is on"), is_refused, "{reasons}");
+    }
+}
+
+/// Where a beam of constant power may wait, a rapid that becomes a feed changes nothing else.
+#[test]
+fn a_rapid_before_the_end_becomes_a_feed() {
+    let machine = machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"grbl\"\n[converter]\npeak_power_w = 1\n{}",
+        linear_axes("XYZ", [12000.0, 500.0, 10.0], "")
+    ));
+    for end in ["M2\n", "M0\nG1 X9 F100\n", ""] {
+        let program = format!("G21 G90\nM3 S100\nG1 X5 F500\nG0 X80 Y60\n{end}");
+        let input = Cursor::new(program.as_bytes());
+        let how = LimitOptions::default();
+        let mut text = Vec::new();
+        let found = limit(input, &machine, &Options::default(), how, &mut text, None);
+        let found = found.expect("read");
+        assert!(found.certified, "{program}{:?}", found.reasons);
+        let text = String::from_utf8(text).expect("text");
+        assert!(text.contains("\nG1 X80 Y60 F"), "{text}");
+    }
 }

@@ -8,6 +8,8 @@ use insta::assert_snapshot;
 
 use crate::fanuc::{moves, notes};
 use crate::listing::{listing, machine, machine_of, refusals};
+use crate::machines::{linear_axes, machine_from};
+use crate::runs::{rows_of, summary_of};
 
 fn on_lathe(more: &str, program: &str) -> String {
     listing(program, &machine_of("siemens", more, "XZ", ""), None)
@@ -179,4 +181,48 @@ fn a_bore_that_the_operator_leaves() {
     3 feed Z-5.0000 F250.0000
     3 rapid
     ");
+}
+
+/// A stop of unknown length (M0) is long enough for what was asked for before it: the spindle brakes,
+/// and runs up again after it; loads that go off after it were on.
+#[test]
+fn what_happens_during_a_stop() {
+    let text = "schema = 1\nname = \"test\"\ncontroller = \"fanuc\"\n[converter]\npeak_power_w = 1e6\n\
+                [spindle]\ninertia_kg_m2 = 0.02\nmax_rpm = 8000\naccel_time_s = 1\npeak_power_w = 1400\n\
+                wait = true\n[[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 1600\n";
+    let machine = machine_from(&format!(
+        "{text}{}",
+        linear_axes("X", [6000.0, 1000.0, 10.0], "")
+    ));
+    let figures = |program: &str| {
+        let found = summary_of(&machine, &format!("G21 G90\n{program}M30\n"));
+        (found.peak_w, found.regen_w)
+    };
+    let with = |stop: &str| format!("S8000 M3\nG1 X10. F100\nM5\n{stop}\nM3\nG4 X9.\n");
+    let (stopped, waited) = (figures(&with("M0")), figures(&with("G4 X9.")));
+    assert!(
+        stopped.0 >= waited.0 * 0.999 && stopped.1 >= waited.1 * 0.999,
+        "{stopped:?} {waited:?}"
+    );
+    assert!(waited.1 > 1000.0, "{waited:?}");
+    // What feeds back more than the converter takes has a row of its own.
+    let weak = text.replace(
+        "peak_power_w = 1e6",
+        "peak_power_w = 1e6\nregen_power_w = 1300",
+    );
+    let weak = machine_from(&format!(
+        "{weak}{}",
+        linear_axes("X", [6000.0, 1000.0, 10.0], "")
+    ));
+    let runs = summary_of(
+        &weak,
+        "G21 G90\nS1000 M3\nG1 X2. F100\nS8000\nM0\nM5\nM30\n",
+    );
+    assert!(runs.peak_w >= 1400.0 && runs.regen_w > 10_000.0, "{runs:?}");
+    assert!(figures("G0 X1.\nM8\nM0\nM9\n").0 >= 1600.0);
+    // Without a stop they count with the next move.
+    assert!(figures("G0 X1.\nM8\nM9\nG0 X2.\nG0 X3.\n").0 >= 1600.0);
+    let rows = rows_of(&machine, "G21 G90\nG0 X1.\nM8\nM9\nG0 X2.\nG0 X30.\nM30\n");
+    let last = rows.last().expect("a row");
+    assert!(last.peak_w < 1600.0, "{}", last.peak_w);
 }

@@ -263,6 +263,7 @@ impl<'a> Alike<'a> {
         match (others, last) {
             (others, 0) => lines(others),
             ([], last) => format!("lines up to {last}"),
+            (others, last) if others.iter().any(|it| it.line == last) => lines(others),
             (others, last) => format!("{}, and up to {last}", lines(others)),
         }
     }

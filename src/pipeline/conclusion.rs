@@ -31,9 +31,10 @@ pub(super) fn conclude(
         deeper: _,
         paced: _,
     } = certified;
-    if target != machine {
+    let lowered_enough = found.count == 0 && reasons.only_power() && after.fits();
+    if target != machine || lowered_enough {
         // What cannot reach the lower limit keeps the machine's own, or else the
-        // figures show it.
+        // figures show it; and the moves next to one may have been lowered enough for it.
         reasons = Reasons::default();
     }
     reasons.extend(found);

@@ -6,6 +6,7 @@ use crate::machine::{Lathe, Machine, PathMode};
 use crate::motion::{CYCLE, TURNING_CYCLE};
 
 /// Why a rapid is not written as a feed, where the program can help.
+pub(super) const BEAM_IS_LIT: &str = "the laser is on: it is off in G0 and would burn along a feed";
 pub(super) const FEED_MODE: &str = "neither G94 nor G95 says what F means";
 pub(super) const PER_REVOLUTION: &str = "the feed in force is per revolution";
 pub(super) const UNKNOWN_FEED: &str =
@@ -64,6 +65,10 @@ pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static s
         UNKNOWN_FEED => {
             "write F before it; or give the F of power-on, which no written one exceeds: \
              power_on_feed_mm_min under [language] of the machine file"
+        }
+        BEAM_IS_LIT => {
+            "write M5 or S0 before it; on a machine with a spindle laser_mode = false under [path] of \
+             the machine file says that it is none"
         }
         FEED_MODE => {
             "write G94 or G95 before it; or say with which of them the machine begins: feed = \

@@ -62,6 +62,31 @@ fn the_speed_factor_and_the_extruder() {
     2 feed E0.000>5.000 v10.000
     3 feed X0.000>5.000 v5.000
     ");
+    // Where an axis is named, even if it stays where it is.
+    assert_snapshot!(reprap("M220 S50\nG1 X0 E5 F600\n"), @r"
+    2 feed E0.000>5.000 v5.000
+    ");
+    // M221 does the same.
+    assert_snapshot!(reprap("M221 S50\nG1 E5 F600\nG1 X5 E9\n"), @r"
+    2 feed E0.000>5.000 v10.000
+    3 feed X0.000>5.000 E5.000>7.000 v10.000
+    ");
+}
+
+/// RepRapFirmware, DDA.cpp: only forward extrusion is printing (M204 P); a wipe travels (T).
+#[test]
+fn wipes_travel() {
+    let program = "M83\nM204 P500 T800\nG1 X10 E1 F600\nG1 X5 E-0.5\nG2 X15 I5 E-0.5\n";
+    assert_snapshot!(reprap(program), @r"
+    3 feed X0.000>10.000 E0.000>1.000 v10.000 a500
+    4 feed X10.000>5.000 E1.000>0.500 v10.000 a800
+    5 arc X5.000>15.000 Y0.000>0.000 E0.500>0.000 v10.000 a800
+    ");
+    assert_snapshot!(marlin(program), @r"
+    3 feed X0.000>10.000 E0.000>1.000 v10.000 a500
+    4 feed X10.000>5.000 E1.000>0.500 v10.000 a500
+    5 arc X5.000>15.000 Y0.000>0.000 E0.500>0.000 v10.000 a500
+    ");
 }
 
 /// Marlin M204: S for both, then P and T; R for the extruder alone.
@@ -174,6 +199,45 @@ fn limits_may_act_on_the_move_before() {
     );
     let (_, _, errors) = shop.run("limit a.gcode --allow feed -o out.gcode");
     assert!(!errors.contains("fault of gwatt"), "{errors}");
+}
+
+/// The same of M220 and M221 (GCodes2.cpp, case 220; RawMove.cpp): the move before them may be as
+/// fast as they say, or push as much filament.
+#[test]
+fn factors_may_act_on_the_move_before() {
+    for (word, low) in [("M220", 20), ("M221", 10)] {
+        let program = |first: u32, between: &str| {
+            format!(
+                "M83\n{word} S{first}\nG1 X60 F3000\nG1 X90 E20\n{between}{word} S100\nG1 X89 F60\n"
+            )
+        };
+        let exact = peak_w("reprap", &program(low, "G1\n"));
+        let early = peak_w("reprap", &program(low, ""));
+        let full = peak_w("reprap", &program(100, ""));
+        assert!(early >= full * (1.0 - 1e-9), "{word}: {early} {full}");
+        assert!(exact < 0.9 * full, "{word}: {exact} {full}");
+        let marlin = |between| peak_w("marlin", &program(low, between));
+        assert_eq!(marlin(""), marlin("G1\n"));
+    }
+}
+
+/// M566 holds for the corners of moves that wait (DDA.cpp, `MatchSpeeds`): short moves that end fast
+/// where they turn, though the program raises the steps after them.
+#[test]
+fn corners_may_be_set_for_moves_that_wait() {
+    let short = (1..20).fold(String::new(), |mut text, number| {
+        let _ = writeln!(text, "G1 X{number} Y{} F18000", number % 2);
+        text
+    });
+    let program = |first: u32, wait: &str| {
+        format!(
+            "M566 X{first} Y{first}\nG1 X0 Y1 F6000\n{short}{wait}M566 X6000 Y6000\nG1 X40 F600\n"
+        )
+    };
+    let [exact, early, full] = [(60, "M400\n"), (60, ""), (6000, "")]
+        .map(|(first, wait)| peak_w("reprap", &program(first, wait)));
+    assert!(early >= full * (1.0 - 1e-9), "{early} {full}");
+    assert!(exact < 0.9 * full, "{exact} {full}");
 }
 
 /// RepRapFirmware sees more or fewer moves, as time goes. Of 1 mm at 50 mm/s² it is as fast as it can

@@ -36,7 +36,6 @@ impl Control<'_> {
 
     /// Stops and the end come after the motion.
     pub(super) fn end_of_block(&mut self, run: &mut Run<'_, '_>) {
-        self.loads &= !std::mem::take(&mut self.loads_off);
         self.beam_at_empty_line(run);
         if !run.facts.boundary && run.facts.stop_word.is_none() {
             return;
@@ -53,6 +52,10 @@ impl Control<'_> {
                 self.reset_modes(run);
             }
             self.ended |= kind == ActionKind::End;
+            if self.loads & self.loads_hidden != 0 {
+                // However long it lasts, what is on draws meanwhile.
+                self.dwell(run, 0.0);
+            }
             run.act(kind, f64::from(number) / 10.0);
         }
     }

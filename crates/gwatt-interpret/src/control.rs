@@ -45,6 +45,8 @@ pub(super) struct Control<'m> {
     pub(super) special: Special,
     pub(super) loads: u32,
     pub(super) loads_off: u32,
+    /// Those that were switched on after the last move: none has shown them.
+    pub(super) loads_hidden: u32,
     pub(super) tools: Tools,
     pub(super) programmed: Programmed,
     /// G16.

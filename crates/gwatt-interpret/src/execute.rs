@@ -51,6 +51,7 @@ impl<'m> Interpreter<'m> {
             special: Special::new(rules, reading),
             loads: 0,
             loads_off: 0,
+            loads_hidden: 0,
             tools: Tools::new(reading.tools.clone()),
             programmed: Programmed::default(),
             polar: None,
@@ -232,6 +233,7 @@ impl<'m> Interpreter<'m> {
             self.control.compensate(&mut run, before, errors);
         }
         self.control.let_knobs_act(&mut run, before);
+        self.control.settle_loads(&run);
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);
             self.control.transfer = None;

@@ -54,6 +54,8 @@ pub struct Facts {
     /// The reference point that it goes to: 1 is that of G28, G74 and homing; further ones are
     /// those of G30, from 2 on, and the fixed points of G75, the first of which is 2.
     pub reference: Option<u16>,
+    /// It moves at rapid while a laser is lit, which is off in G0 alone.
+    pub beam_is_lit: bool,
     /// It homes the axes at a speed of the control's own, under the limits in force.
     pub homes: bool,
     /// The block carries a checksum.

@@ -69,6 +69,8 @@ impl Control<'_> {
         let (kind, feed_mm_s) = if uses_feed {
             let feed = feed.as_ref().or(self.modal.feed.as_ref())?;
             (MoveKind::Feed, self.straight_speed(feed, end, way)?)
+        } else if self.beam_waits_for_feed() {
+            return None;
         } else {
             (MoveKind::Rapid, f64::INFINITY)
         };
@@ -224,6 +226,7 @@ impl Control<'_> {
             && self.corners.is_none()
             && self.special.left.is_none()
             && self.pending_actions.is_empty()
+            && self.loads_hidden == 0
             && self.knobs.pending.is_none()
             && !self.knobs.is_paced()
             && self.callee.is_none()

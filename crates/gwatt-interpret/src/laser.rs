@@ -7,6 +7,8 @@ use gwatt_motion::{ActionKind, MoveKind, Step};
 
 /// M3: a beam of constant power.
 const CONSTANT: u16 = 3;
+/// M4: a beam whose power follows the speed.
+const DYNAMIC: u16 = 4;
 /// M5.
 const BEAM_OFF: u16 = 5;
 
@@ -49,7 +51,7 @@ impl Control<'_> {
                 _ => None,
             });
         if motion.is_some_and(|feed| feed != feeds(self.modal.motion)) {
-            run.act(ActionKind::MayStop, 0.0);
+            run.act(ActionKind::BeamMayStop, 0.0);
         }
     }
 
@@ -59,13 +61,27 @@ impl Control<'_> {
     pub(super) fn beam_at_empty_line(&self, run: &mut Run<'_, '_>) {
         let empty = |step: &Step| matches!(step, Step::Move(mv) if mv.kind != MoveKind::Dwell && self.is_empty_way(mv.length_mm));
         if self.beam_is_constant() && run.steps.iter().any(empty) {
-            run.act(ActionKind::MayStop, 0.0);
+            run.act(ActionKind::BeamMayStop, 0.0);
         }
     }
 
     /// Whether a beam of constant power may wait at a line of this length.
     pub(super) fn is_empty_way(&self, length_mm: f64) -> bool {
         length_mm < STEP_MM && self.beam_is_constant()
+    }
+
+    /// Whether a beam that is off in G0 would burn along a feed in its place. Where it is not known
+    /// whether there is one, M4 or an S in a block that moves shows that there is.
+    ///
+    /// Source: grbl, `gcode.c`, step 4 (`GC_PARSER_LASER_DISABLE`).
+    #[inline]
+    pub(super) fn beam_waits_for_feed(&self) -> bool {
+        let lit = self.switches.spindle != BEAM_OFF && self.modal.spindle_rpm != 0.0;
+        lit && match self.machine.controller.queue.laser_mode {
+            LaserMode::On => true,
+            LaserMode::Unknown => self.switches.spindle == DYNAMIC || self.switches.speed_in_motion,
+            LaserMode::Off => false,
+        }
     }
 
     fn beam_is_constant(&self) -> bool {

@@ -40,6 +40,7 @@ impl Control<'_> {
         {
             self.set_speed(value, run);
             let kind = self.kind_of_speed(run);
+            self.switches.speed_in_motion = kind == ActionKind::SpeedInMotion;
             run.act(kind, value);
             self.note_spindle(run);
         }
@@ -230,11 +231,26 @@ impl Control<'_> {
         }
     }
 
+    /// The end of a line: what it switches off is off, once a move has shown what that draws.
+    pub(super) fn settle_loads(&mut self, run: &Run<'_, '_>) {
+        if self.loads_off | self.loads_hidden == 0 {
+            return;
+        }
+        let is_own = |step: &Step| matches!(step, Step::Move(mv) if mv.line == run.line);
+        if run.steps.iter().any(is_own) {
+            self.loads_hidden = 0;
+        }
+        let off = self.loads_off & !self.loads_hidden;
+        self.loads &= !off;
+        self.loads_off &= !off;
+    }
+
     /// Switches loads on. Those that go off do so after the block's moves,
     /// since controllers differ in when they do.
     pub(super) fn switch_loads(&mut self, value: f64) {
         for (index, load) in self.machine.loads.iter().enumerate().take(32) {
             if load.on.contains(&(b'M', value)) {
+                self.loads_hidden |= !self.loads & 1 << index;
                 self.loads |= 1 << index;
                 self.loads_off &= !(1 << index);
             }

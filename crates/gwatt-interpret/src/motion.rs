@@ -337,6 +337,7 @@ impl Control<'_> {
                 accel_mm_s2[EXTRUDER] = accel_mm_s2[EXTRUDER].max(alone);
             }
         }
+        run.facts.beam_is_lit |= kind == MoveKind::Rapid && self.beam_waits_for_feed();
         let strays = |arc| stray::of_arc(arc, &self.position.at, end);
         let stray = arc.as_ref().map_or(Stray::NONE, strays);
         (self.moved, self.printer.stands) = (true, false);

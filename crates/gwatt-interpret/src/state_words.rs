@@ -16,6 +16,8 @@ use super::spindle_speed::SpindleMode;
 pub(super) struct Switches {
     /// M3, M4 or M5.
     pub(super) spindle: u16,
+    /// S was set last in a block that moves.
+    pub(super) speed_in_motion: bool,
     pub(super) mist: bool,
     pub(super) flood: bool,
     pub(super) feed_override: bool,
@@ -28,6 +30,7 @@ impl Default for Switches {
     fn default() -> Self {
         Self {
             spindle: 5,
+            speed_in_motion: false,
             mist: false,
             flood: false,
             feed_override: true,

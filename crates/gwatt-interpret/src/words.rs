@@ -16,6 +16,9 @@ use gwatt_syntax::{Block, Word};
 /// The bit of the motion group.
 const MOTION_GROUP: u32 = 1;
 
+/// Words that a block may have.
+const WORDS_MAX: usize = 256;
+
 /// The words of a block by letter. A buffer, filled again for each block.
 #[derive(Debug)]
 pub(super) struct Words {
@@ -74,6 +77,15 @@ impl Words {
         self.g.clear();
         self.m.clear();
         self.knobs.clear();
+        if let Some(word) = block.words.get(WORDS_MAX) {
+            // Each of thousands of words that are wrong would be looked at in a long line.
+            let message = "more than 256 words in a block";
+            report
+                .error("too-many-words", message, word.span)
+                .help("write two blocks");
+            self.unused = 0;
+            return;
+        }
         let plain = !controller.language.dialect.active;
         let mut words = block.words.iter().enumerate().peekable();
         while let Some((index, word)) = words.next() {

@@ -24,12 +24,12 @@ impl Step {
         matches!(self, Self::Move(mv) if mv.moves_axes())
     }
 
-    /// Whether it only reports what limits the moves, a word of the feed or limits that may
-    /// act early: these need not stand in a limited program as they do in the original.
+    /// Whether it only reports what limits the moves, a word of the feed, limits that may
+    /// act early or where a beam may wait: these need not stand in a limited program as they do in the original.
     #[must_use]
     pub fn is_note(&self) -> bool {
         matches!(self, Self::Action(action)
-            if matches!(action.kind, ActionKind::Feed | ActionKind::EarlyLimits(_)))
+            if matches!(action.kind, ActionKind::Feed | ActionKind::EarlyLimits(_) | ActionKind::BeamMayStop))
     }
 }
 
@@ -299,7 +299,8 @@ pub enum EarlyLimits {
     Feed,
     /// The lengths of filament (M221).
     Filament,
-    /// The steps of speed at the corners of all moves that wait (M566).
+    /// The steps of speed at the corners of all moves that wait (M566); its number is the largest,
+    /// mm/s.
     Corners,
 }
 
@@ -332,6 +333,9 @@ pub enum ActionKind {
     Other,
     /// A printer's command at which the axes may stop or not.
     MayStop,
+    /// The same where a beam of constant power may wait for the axes, which depends on which moves
+    /// are rapids (grbl's laser mode).
+    BeamMayStop,
     /// Limits change, perhaps for the last move before already: the factor by which they rise at
     /// most for its axes.
     EarlyLimits(EarlyLimits),

@@ -175,7 +175,7 @@ impl<'m> Assessor<'m> {
         });
         self.observer
             .spindle_loads(&self.model, &mut bus.spindle_loads);
-        bus.act(action);
+        bus.act(action, sink);
         self.bus = Some(bus);
     }
 

@@ -63,7 +63,10 @@ impl Switched {
             | ActionKind::SpindleCenter
             | ActionKind::ToolLoaded => return Effect::None,
             ActionKind::Stop | ActionKind::End | ActionKind::Rest => return Effect::Stop,
-            ActionKind::ToolChangeInMotion | ActionKind::EarlyLimits(_) | ActionKind::MayStop => {
+            ActionKind::ToolChangeInMotion
+            | ActionKind::EarlyLimits(_)
+            | ActionKind::MayStop
+            | ActionKind::BeamMayStop => {
                 return Effect::Unknown;
             }
             ActionKind::Other if number == 0 => return Effect::None,

@@ -62,7 +62,7 @@ impl Control<'_> {
             };
             text = text.from(next);
         }
-        self.loads &= !std::mem::take(&mut self.loads_off);
+        self.settle_loads(run);
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);
         }

@@ -120,7 +120,9 @@ impl Control<'_> {
         if early && before != self.knobs.corner && !self.printer.stands {
             // Corners of moves that wait are worked out again as further moves come
             // (DDA::MatchSpeeds).
-            run.act(ActionKind::EarlyLimits(EarlyLimits::Corners), 1.0);
+            let largest = steps.mm_s.into_iter().filter(|step| step.is_finite());
+            let largest_mm_s = largest.fold(0.0, f64::max);
+            run.act(ActionKind::EarlyLimits(EarlyLimits::Corners), largest_mm_s);
         }
     }
 

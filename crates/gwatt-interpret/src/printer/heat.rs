@@ -88,6 +88,7 @@ impl Control<'_> {
             match on {
                 Some(true) => {
                     self.printer.lit[load] |= bits;
+                    self.loads_hidden |= !self.loads & 1 << load;
                     self.loads |= 1 << load;
                     self.loads_off &= !(1 << load);
                 }
@@ -135,6 +136,7 @@ impl Control<'_> {
         }
         let all = u32::MAX.checked_shr(32 - loads).unwrap_or_default();
         self.printer.maybe_lit |= all;
+        self.loads_hidden |= all & !self.loads;
         self.loads |= all;
         self.loads_off &= !all;
         let name = String::from_utf8_lossy(span.of(run.report.text)).into_owned();

@@ -14,7 +14,7 @@ const QUEUE: usize = 4096;
 
 impl SpindleBus<'_> {
     /// Takes an action.
-    pub fn act(&mut self, action: &Action) {
+    pub fn act(&mut self, action: &Action, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         let speaks = match action.kind {
             ActionKind::Spindle
             | ActionKind::SpindleRpm
@@ -38,19 +38,27 @@ impl SpindleBus<'_> {
                 action: *action,
             });
             if self.queue.len() > QUEUE {
-                self.catch_up();
+                self.catch_up(None, sink);
             }
             self.reserve_w = [f64::INFINITY; 2];
         }
     }
 
-    /// Carries out the commands before the next move.
-    pub(super) fn catch_up(&mut self) {
+    /// Carries out the commands before the next move. What is asked for before a stop that takes a
+    /// time of its own comes off during that.
+    pub(super) fn catch_up(
+        &mut self,
+        next: Option<&Move>,
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+    ) {
         while let Some(queued) = self.queue.front()
             && queued.after <= self.handed
         {
             let action = queued.action;
             self.queue.pop_front();
+            if action.kind == ActionKind::Stop {
+                self.set_off(sink, next, true);
+            }
             self.carry_out(&action);
         }
     }
@@ -130,11 +138,13 @@ impl SpindleBus<'_> {
         self.direction * (rpm * factor).min(max)
     }
 
-    /// Sets off the run that was asked for; rows of runs that do not fit.
+    /// Sets off the run that was asked for; rows of runs that do not fit, or that no move
+    /// shows.
     pub(super) fn set_off(
         &mut self,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
         next: Option<&Move>,
+        alone: bool,
     ) {
         let Some(line) = self.asked.take() else {
             return;
@@ -163,7 +173,8 @@ impl SpindleBus<'_> {
             // Turned down, the run before has come further.
             demand = self.alone(next, slower.henceforth(&self.motor));
         }
-        if !self.model.fits(&demand) {
+        let shows = alone && !self.states[0].is_steady();
+        if shows || !self.model.fits(&demand) {
             self.row(
                 (line, next),
                 demand,

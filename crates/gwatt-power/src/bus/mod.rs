@@ -158,8 +158,8 @@ impl<'m> SpindleBus<'m> {
         want: Want,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
-        self.catch_up();
-        self.set_off(sink, Some(mv));
+        self.catch_up(Some(mv), sink);
+        self.set_off(sink, Some(mv), false);
         if self.waits(mv) {
             self.wait(mv, sink);
         }
@@ -271,7 +271,7 @@ impl<'m> SpindleBus<'m> {
     /// The end of the program: what is still asked for.
     pub fn finish(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         self.handed = self.pushed;
-        self.catch_up();
-        self.set_off(sink, None);
+        self.catch_up(None, sink);
+        self.set_off(sink, None, false);
     }
 }

@@ -10,8 +10,8 @@ use crate::late::unpaced;
 use crate::model::PowerModel;
 use crate::observer::{Observer, span};
 use crate::robust::{Extremes, Part};
-use gwatt_machine::Machine;
-use gwatt_motion::Move;
+use gwatt_machine::{AxisValues, Machine};
+use gwatt_motion::{Corner, Move, SpeedSteps};
 use gwatt_plan::{Overrides, SpeedBound, blended_bound, blended_speed};
 
 impl Ahead {
@@ -211,7 +211,8 @@ impl Open {
     ) {
         let mut kept = std::mem::take(&mut self.kept);
         let bounds = self.bounds(adjacent, machine, largest);
-        let mut window = self.window(adjacent, &bounds);
+        let accels = self.accels(adjacent, machine);
+        let mut window = window(&bounds, &accels);
         if let Some(unwaited) = unwaited {
             window[0] = unwaited.part();
         }
@@ -244,7 +245,8 @@ impl Open {
         }
         let mut kept = std::mem::take(&mut self.kept);
         let bounds = self.bounds(adjacent, machine, largest);
-        let window = self.window(adjacent, &bounds);
+        let accels = self.accels(adjacent, machine);
+        let window = window(&bounds, &accels);
         let Demand {
             peak_w, regen_w, ..
         } = self.assessment.demand;
@@ -273,19 +275,51 @@ impl Open {
             .map(|open| blended_bound(machine, &unpaced(open.at_most()), largest))
     }
 
-    fn window<'a>(
-        &'a self,
-        [before, next]: [Option<&'a Self>; 2],
-        [first, own, last]: &'a [SpeedBound; 3],
-    ) -> [Part<'a>; 3] {
-        let part = |bound, open: &'a Self| Part {
-            bound,
-            accel_mm_s2: &open.at_most().accel_mm_s2,
-        };
-        [
-            part(first, before.unwrap_or(self)),
-            part(own, self),
-            part(last, next.unwrap_or(self)),
-        ]
+    /// The accelerations of the same moves.
+    fn accels(&self, [before, next]: [Option<&Self>; 2], machine: &Machine) -> [AxisValues; 3] {
+        [before.unwrap_or(self), self, next.unwrap_or(self)].map(|open| open.axes_accel(machine))
     }
+
+    /// The largest acceleration of each axis. Where it is limits that may act early which leave it
+    /// in doubt, and joints are steps of speed, that of the path, and on top of it the steps that may
+    /// fall within the response time, as their mean over it.
+    fn axes_accel(&self, machine: &Machine) -> AxisValues {
+        let mv = self.at_most();
+        let mut accel_mm_s2 = mv.accel_mm_s2;
+        let steps = match mv.corner {
+            Corner::Steps(steps) => Some(steps),
+            _ => SpeedSteps::of(machine),
+        };
+        let known = mv.unknown_start.is_empty();
+        let (Some(steps), Some(largest_mm_s)) = (steps.filter(|_| known), self.step_mm_s) else {
+            return accel_mm_s2;
+        };
+        let response_s = machine.path.response_time_s;
+        let most_mm_s = 2.0 * mv.feed_mm_s;
+        let chords = machine
+            .controller
+            .planner
+            .look_ahead
+            .and_then(|it| it.chords);
+        let per_second = match (&mv.arc, chords) {
+            (None, _) => mv.feed_mm_s / mv.length_mm,
+            (_, Some(chords)) if chords.per_second > 0.0 => chords.per_second,
+            _ => f64::INFINITY,
+        };
+        let joints = 1.0 + response_s * per_second;
+        for (axis, step_mm_s) in SpeedSteps::AXES.into_iter().zip(steps.mm_s) {
+            let step_mm_s = (joints * step_mm_s.max(largest_mm_s)).min(most_mm_s);
+            let own = &mut accel_mm_s2[axis as usize];
+            *own = own.min(mv.path_accel_mm_s2) + step_mm_s / response_s;
+        }
+        accel_mm_s2
+    }
+}
+
+/// The largest speeds and accelerations of three moves.
+fn window<'a>(bounds: &'a [SpeedBound; 3], accels: &'a [AxisValues; 3]) -> [Part<'a>; 3] {
+    std::array::from_fn(|index| Part {
+        bound: &bounds[index],
+        accel_mm_s2: &accels[index],
+    })
 }

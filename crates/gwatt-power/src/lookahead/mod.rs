@@ -338,7 +338,8 @@ impl Ahead {
     }
 
     /// New limits may hold for the last move already: they may be higher by this factor. With those
-    /// of speed it may be as fast as F asks.
+    /// of speed it may be as fast as F asks. Of corners, which hold for all moves that wait, it is the
+    /// largest step, mm/s.
     pub fn doubt_limits(
         &mut self,
         model: &PowerModel,
@@ -351,9 +352,20 @@ impl Ahead {
         }
         self.doubt();
         self.brake_in_doubt(model, observer);
-        if limits == EarlyLimits::Corners {
+        let (first, step_mm_s) = if limits == EarlyLimits::Corners {
             // What is not certain counts with any speed at its corners.
-            return self.doubt_from(self.open.first());
+            self.doubt_from(self.open.first());
+            (self.open.first(), factor)
+        } else {
+            (self.largest.next.max(self.open.first()), 0.0)
+        };
+        for number in first..self.open.end() {
+            if let Some(open) = self.open.get_mut(number) {
+                open.step_mm_s = Some(open.step_mm_s.unwrap_or(0.0).max(step_mm_s));
+            }
+        }
+        if limits == EarlyLimits::Corners {
+            return;
         }
         if let Some(last) = self.open.back_mut() {
             let mut early = last.at_most().clone();

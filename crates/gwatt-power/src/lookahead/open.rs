@@ -38,6 +38,9 @@ pub(super) struct Open {
     pub kept: Buffered,
     /// The same move under limits that may hold for it already.
     pub early: Option<Box<Move>>,
+    /// It is in doubt by limits that may act early: then so large a step of speed may be permitted at
+    /// its ends, mm/s, or that which it says itself.
+    pub step_mm_s: Option<f64>,
 }
 
 /// How a move takes part.
@@ -71,6 +74,7 @@ impl Open {
             glided: Glided::default(),
             kept: Buffered::default(),
             early: None,
+            step_mm_s: None,
         }
     }
 
@@ -92,7 +96,7 @@ impl Open {
         (self.alone, self.steady) = (true, true);
         (self.in_doubt, self.rests, self.moves) = (false, false, false);
         self.kept.clear();
-        self.early = None;
+        (self.early, self.step_mm_s) = (None, None);
     }
 }
 
