@@ -1,5 +1,6 @@
 //! What a model costs besides its parameters.
 
+use super::certainty;
 use super::transfer::{Factor, TransferFunction};
 
 /// What a model has to pay for besides its parameters. Which of many frequencies
@@ -33,7 +34,23 @@ pub fn charge(
         .sum();
     let leads = leads(transfer, from_command);
     let seldom = transfer.zeros_on_the_right() + leads;
-    states + 2.0 * libm::log(1.0 + lag) + seldom as f64 * libm::log(n)
+    let parts = parts_of_period(transfer, period_s, from_command);
+    states
+        + 2.0 * libm::log(1.0 + lag)
+        + seldom as f64 * libm::log(n)
+        + parts as f64 * certainty::PART_OF_PERIOD
+}
+
+/// Lags shorter than a period: what they do between two samples a delay does as well, which
+/// has to be as clear. After a command the dead time is found by its profile, in which such
+/// lags have their place.
+fn parts_of_period(transfer: &TransferFunction, period_s: f64, from_command: bool) -> usize {
+    let is_short = |pole: &&Factor| match **pole {
+        Factor::Real { time_constant_s } => time_constant_s < period_s,
+        Factor::Pair { .. } => false,
+    };
+    let poles = transfer.poles.iter().filter(|_| !from_command);
+    poles.filter(is_short).count()
 }
 
 /// Damped zeros that are no dampers' next to the fastest mode: they lead by more than
