@@ -73,3 +73,29 @@ fn leads(transfer: &TransferFunction, from_command: bool) -> usize {
     let zeros = transfer.zeros.iter().filter(leads).filter(is_fast);
     zeros.map(|zero| zero.degree()).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A lag of a thousandth of a period is worth as much as a delay of a part of one; one of
+    /// two periods, or of a loop that follows a command, is what it is.
+    #[test]
+    fn a_lag_within_a_period_pays_as_a_delay_does() {
+        const T: f64 = 1e-3;
+        let axis = |time_constant_s: f64| TransferFunction {
+            gain: 1.0,
+            zeros: Vec::new(),
+            poles: vec![Factor::Real { time_constant_s }],
+            delay_s: 0.0,
+        };
+        // Besides, its first state explains so many samples: ln(1 + τ/T).
+        let besides = |periods: f64, from_command: bool| {
+            let all = charge(&axis(periods * T), 1000, T, from_command);
+            all - libm::log(1.0 + periods)
+        };
+        assert!((besides(0.001, false) - certainty::PART_OF_PERIOD).abs() < 1e-9);
+        assert!(besides(2.0, false).abs() < 1e-9);
+        assert!(besides(0.001, true).abs() < 1e-9);
+    }
+}
