@@ -1,5 +1,6 @@
 //! What a model costs besides its parameters.
 
+use super::certainty;
 use super::transfer::{Factor, TransferFunction};
 
 /// What a model has to pay for besides its parameters. Which of many frequencies
@@ -33,7 +34,23 @@ pub fn charge(
         .sum();
     let leads = leads(transfer, from_command);
     let seldom = transfer.zeros_on_the_right() + leads;
-    states + 2.0 * libm::log(1.0 + lag) + seldom as f64 * libm::log(n)
+    let parts = parts_of_period(transfer, period_s, from_command);
+    states
+        + 2.0 * libm::log(1.0 + lag)
+        + seldom as f64 * libm::log(n)
+        + parts as f64 * certainty::PART_OF_PERIOD
+}
+
+/// Lags shorter than a period: what they do between two samples a delay does as well, which
+/// has to be as clear. After a command the dead time is found by its profile, in which such
+/// lags have their place.
+fn parts_of_period(transfer: &TransferFunction, period_s: f64, from_command: bool) -> usize {
+    let is_short = |pole: &&Factor| match **pole {
+        Factor::Real { time_constant_s } => time_constant_s < period_s,
+        Factor::Pair { .. } => false,
+    };
+    let poles = transfer.poles.iter().filter(|_| !from_command);
+    poles.filter(is_short).count()
 }
 
 /// Damped zeros that are no dampers' next to the fastest mode: they lead by more than
@@ -55,4 +72,30 @@ fn leads(transfer: &TransferFunction, from_command: bool) -> usize {
     let is_fast = |zero: &&Factor| !from_command || zero.corner_rad_s() > slowest;
     let zeros = transfer.zeros.iter().filter(leads).filter(is_fast);
     zeros.map(|zero| zero.degree()).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A lag of a thousandth of a period is worth as much as a delay of a part of one; one of
+    /// two periods, or of a loop that follows a command, is what it is.
+    #[test]
+    fn a_lag_within_a_period_pays_as_a_delay_does() {
+        const T: f64 = 1e-3;
+        let axis = |time_constant_s: f64| TransferFunction {
+            gain: 1.0,
+            zeros: Vec::new(),
+            poles: vec![Factor::Real { time_constant_s }],
+            delay_s: 0.0,
+        };
+        // Besides, its first state explains so many samples: ln(1 + τ/T).
+        let besides = |periods: f64, from_command: bool| {
+            let all = charge(&axis(periods * T), 1000, T, from_command);
+            all - libm::log(1.0 + periods)
+        };
+        assert!((besides(0.001, false) - certainty::PART_OF_PERIOD).abs() < 1e-9);
+        assert!(besides(2.0, false).abs() < 1e-9);
+        assert!(besides(0.001, true).abs() < 1e-9);
+    }
 }

@@ -13,6 +13,11 @@ pub struct Data<'a> {
     /// What acts against the input besides, each by a factor that is estimated: speeds
     /// of viscous friction, signs of Coulomb friction.
     pub friction: &'a [Vec<f64>],
+    /// How much viscous friction has been taken off the input by the first of these, where
+    /// there is no other friction and it is the measured speed.
+    pub viscous: Option<f64>,
+    /// How many of them, the last ones, say how an axis turns round next to Coulomb friction.
+    pub turning: usize,
     /// Output; differences of it where a speed or position was measured.
     pub output: &'a [f64],
     /// What the excitation alone makes of the input, in a closed loop.
@@ -59,6 +64,16 @@ impl Signals {
         }
     }
 
+    /// Each of them once more through a filter.
+    pub fn each(&mut self, mut filter: impl FnMut(&mut [f64])) {
+        filter(&mut self.input);
+        self.friction.iter_mut().for_each(|x| filter(x));
+        filter(&mut self.output);
+        if let Some(undisturbed) = &mut self.undisturbed {
+            filter(undisturbed);
+        }
+    }
+
     /// What was recorded, with these signals.
     #[must_use]
     pub fn data<'a>(&'a self, data: &Data<'a>) -> Data<'a> {
@@ -83,6 +98,17 @@ impl Data<'_> {
             undisturbed: self
                 .undisturbed
                 .map(|x| x.get(..cut(x)).unwrap_or_default()),
+            ..*self
+        }
+    }
+
+    /// Without what says how an axis turns round.
+    #[must_use]
+    pub fn without_turning(&self) -> Self {
+        let known = self.friction.len().saturating_sub(self.turning);
+        Self {
+            friction: self.friction.get(..known).unwrap_or_default(),
+            turning: 0,
             ..*self
         }
     }

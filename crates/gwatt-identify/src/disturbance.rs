@@ -232,7 +232,7 @@ fn is_less(criterion: f64, than: Option<&(f64, Noise)>) -> bool {
 }
 
 /// The leaks that are tried on so many samples, ascending in time: 0 for no integrators.
-fn leaks(samples: usize) -> impl Iterator<Item = f64> {
+pub(super) fn leaks(samples: usize) -> impl Iterator<Item = f64> {
     let least = (LASTS / samples.max(1) as f64).max(LEAST);
     let all = LEAKS.into_iter().filter(move |leak| *leak > least);
     std::iter::once(0.0).chain(all).chain([least])

@@ -193,16 +193,16 @@ pub fn identify(recording: &Recording, choice: &Choice) -> Outcome<Flexible> {
 fn as_recorded(recording: &Recording, choice: &Choice) -> Outcome<(Prepared, Flexible)> {
     let mut prepared = prepare(recording, choice)?;
     let may_rub = estimator(choice.method).has_friction() && prepared.is_force;
-    if let Some(rubbing) = may_rub.then(|| Rubbing::of(recording)).flatten() {
-        let force = prepared.input.clone();
-        rubbing.take_off(&mut prepared.input);
+    if let Some(mut rubbing) = may_rub.then(|| Rubbing::of(recording)).flatten() {
+        rubbing.take_off(&mut prepared.input, prepared.measured, prepared.period_s);
         let found = identified(&prepared, choice, &rubbing);
         if let Ok(found) = found
             && found.rubs
         {
             return Ok((prepared, found));
         }
-        prepared.input = force;
+        // As it was: a copy that is kept meanwhile would be megabytes.
+        prepared = prepare(recording, choice)?;
     }
     let found = identified(&prepared, choice, &Rubbing::default())?;
     Ok((prepared, found))
@@ -213,6 +213,8 @@ fn data_of<'a>(prepared: &'a Prepared, friction: &'a [Vec<f64>]) -> Data<'a> {
     Data {
         input: &prepared.input,
         friction,
+        viscous: None,
+        turning: 0,
         output: &prepared.output,
         undisturbed: None,
         period_s: prepared.period_s,
@@ -242,6 +244,8 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
     };
     let data = Data {
         undisturbed: undisturbed.as_deref(),
+        viscous: rubbing.viscous_alone(),
+        turning: rubbing.turning(),
         ..data_of(prepared, &rubbing.inputs)
     };
     let found = method.estimate(&data, prepared, given);
@@ -256,12 +260,16 @@ fn identified(prepared: &Prepared, choice: &Choice, rubbing: &Rubbing) -> Outcom
     let left = Left::of(&found, &data);
     left.widen(&mut found, method);
     let [viscous, coulomb] = rubbing.figures(&found.estimate.friction);
+    let comes_through = found.friction_loop.is_some();
     let mut described = describe(found, &data, prepared, &left)?;
     described.rubs = rubs;
     described.speed_is_summed = rubbing.is_summed();
     (described.viscous, described.coulomb) = (viscous, coulomb);
-    // A force is held while the friction changes: which speed of a sample it had is open.
-    if let (Some(inertia), Some(viscous)) = (&mut described.inertia, described.viscous) {
+    // A force is held while the friction changes: which speed of a sample it had is open, unless
+    // noise comes as through the friction of that speed.
+    if let (Some(inertia), Some(viscous), false) =
+        (&mut described.inertia, described.viscous, comes_through)
+    {
         inertia.std = libm::hypot(inertia.std, viscous.value * prepared.period_s);
     }
     Ok(described)
@@ -409,8 +417,8 @@ pub fn predict_error(model: &Flexible, other: &Recording, choice: &Choice) -> Ou
         (Term::Coulomb, value(model.coulomb)),
     ];
     let mass = 1.0 / model.transfer.gain;
-    if let Some(rubbing) = Rubbing::known(other, mass, figures) {
-        rubbing.take_off(&mut prepared.input);
+    if let Some(mut rubbing) = Rubbing::known(other, mass, figures) {
+        rubbing.take_off(&mut prepared.input, prepared.measured, prepared.period_s);
     }
     let data = data_of(&prepared, &[]);
     let fitted = model.fitted();

@@ -48,6 +48,11 @@ impl Leaky {
         }
     }
 
+    /// The signals, to be filtered further.
+    pub fn signals(&mut self) -> &mut Signals {
+        &mut self.signals
+    }
+
     /// Takes off what fades and an offset, which are fitted anyway: an axis that wanders
     /// off leaves few digits for the rest.
     fn level(&mut self, data: &Data<'_>) {
@@ -199,6 +204,8 @@ mod tests {
                 input: &force[500..],
                 output: &late,
                 friction: &[],
+                viscous: None,
+                turning: 0,
                 undisturbed: None,
                 period_s: 1e-3,
                 measured,

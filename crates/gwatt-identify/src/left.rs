@@ -36,7 +36,11 @@ pub(super) struct Left {
 
 impl Left {
     pub(super) fn of(found: &Modelled, data: &Data<'_>) -> Self {
-        let leaky = found.noise.held(data);
+        let mut leaky = found.noise.held(data);
+        if let (Some(leaky), Some(passed)) = (&mut leaky, &found.friction_loop) {
+            // What it was found with passes.
+            let _ = passed.pass(data, leaky);
+        }
         let compared = leaky.as_ref().map_or(*data, |leaky| leaky.data(data));
         let left = residuals(&compared, &found.estimate).unwrap_or_default();
         let mut rel_error = share(&compared, &left);

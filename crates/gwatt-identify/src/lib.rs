@@ -59,6 +59,7 @@ mod mode;
 mod mode_starts;
 mod candidate_models;
 mod next_to_friction;
+mod friction_loop;
 mod noise;
 mod normal;
 mod output_error;

@@ -10,6 +10,7 @@ use super::data::Data;
 use super::discrete::Discrete;
 use super::disturbance::as_it_is;
 use super::estimate::Estimate;
+use super::friction_loop::FrictionLoop;
 use super::measured_noise::Noise;
 use super::prepared::Prepared;
 use super::response_fit;
@@ -28,6 +29,8 @@ pub(super) struct Modelled {
     /// How far the delay is in doubt besides, s.
     pub(super) delay_doubt_s: f64,
     pub(super) noise: Noise,
+    /// The loop through which noise came, where friction made one.
+    pub(super) friction_loop: Option<FrictionLoop>,
     pub(super) response: FrequencyResponse,
     pub(super) has_errors: bool,
 }
@@ -74,6 +77,7 @@ impl Estimator for Instruments {
             delay_is_free: found.delay_is_free,
             delay_doubt_s: found.delay_doubt_s,
             noise: found.noise,
+            friction_loop: found.friction_loop,
             response: found.response,
             has_errors: true,
         })
@@ -121,6 +125,7 @@ impl Estimator for Response {
             delay_is_free: false,
             delay_doubt_s: 0.0,
             noise: Noise::default(),
+            friction_loop: None,
             // Few long stretches say little of their noise, and windows blur what rings.
             has_errors: response.periodic,
             response,
@@ -237,6 +242,7 @@ fn without_errors(
         delay_is_free: false,
         delay_doubt_s: 0.0,
         noise: Noise::default(),
+        friction_loop: None,
         response: response_of(data, prepared.excitation.as_deref(), None)?,
         has_errors: false,
     })

@@ -6,12 +6,15 @@
 //! nearly undone by a zero. Where what is left comes and goes, such a pair has to explain
 //! more than a little of it.
 
+use nalgebra::DVector;
+
 use super::candidate_models::{CANCELLED_SHARE, cancelled, lean};
 use super::chosen::{Chosen, LAGS, filtered};
 use super::data::Data;
 use super::estimate::Estimate;
 use super::noise::Whiteness;
 use super::output_error::{Effort, Fitting, residuals};
+use super::parameters::parameters;
 use super::stepwise_search::SEARCH_STEPS;
 use super::transfer::TransferFunction;
 
@@ -79,6 +82,26 @@ pub fn with_errors_of_bursts(data: &Data<'_>, taps: &[f64], mut found: Estimate)
         found.covariance *= wider;
         for figure in &mut found.friction {
             figure.std *= wider.sqrt();
+        }
+    }
+    found
+}
+
+/// An estimate with errors of how an axis turns round: by as much as figures are other ones
+/// where nothing is known of that, they are in doubt.
+#[must_use]
+pub fn with_errors_of_turning(data: &Data<'_>, taps: &[f64], mut found: Estimate) -> Estimate {
+    if data.turning == 0 {
+        return found;
+    }
+    let delay_is_free = found.count > parameters(&found.transfer, false).len();
+    let fitting = Fitting::new(data.without_turning(), taps);
+    if let Some(other) = fitting.refine(&found.transfer, delay_is_free, Effort::FULL) {
+        let of = |found: &Estimate| parameters(&found.transfer, delay_is_free);
+        let apart = of(&found).into_iter().zip(of(&other)).map(|(a, b)| a - b);
+        let apart = DVector::from_iterator(found.count, apart);
+        if apart.len() == found.covariance.nrows() {
+            found.covariance += &apart * apart.transpose();
         }
     }
     found

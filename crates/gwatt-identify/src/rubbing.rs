@@ -12,6 +12,7 @@ use super::figure::Figure;
 use super::recording::Recording;
 use super::slow_motion::{SlowMotion, in_band, slow_motion};
 use super::speeds::{Followed, Speed, are_sums, between, mean_sign, speed_of};
+use super::state_space::Measured;
 
 /// A term of friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,6 +21,9 @@ pub(super) enum Term {
     Viscous,
     /// It has the sign of the speed.
     Coulomb,
+    /// It turns round sooner than the sign of the speed that was measured, or takes longer, by
+    /// factors of differences of that sign: how, a recording does not show but by these.
+    Turning,
     /// What a sensor of acceleration adds makes a ramp of its sum, the speed.
     Drift,
 }
@@ -37,6 +41,16 @@ pub(super) struct Rubbing {
     pub(super) about: Vec<f64>,
     /// What slow motion shows, of which that is.
     slow: Option<SlowMotion>,
+}
+
+/// Sums of each sample and those before and after it by these factors.
+fn next_to_each(x: &[f64], by: [f64; 3]) -> Vec<f64> {
+    let sums = x.windows(3).map(|near| {
+        let terms = near.iter().zip(&by).map(|(x, by)| x * by);
+        terms.sum::<f64>()
+    });
+    let ends = || std::iter::once(0.0).take(x.len());
+    ends().chain(sums).chain(ends()).take(x.len()).collect()
 }
 
 /// How sure a figure is, in standard errors; below 0 where it is negative.
@@ -69,18 +83,17 @@ impl Rubbing {
             out.add(Term::Drift, &speed, 0.0);
         }
         out.slow = Some(slow);
-        // One way the noise of the speed is large next to its changes. It is that of the motion
-        // too, and a model that has the one as an input makes the other of it.
-        let is_one_way = out.is_one_way();
-        let given = |whole: &Vec<f64>| {
-            if is_one_way {
-                in_band(whole, recording.period_s)
-            } else {
-                whole.clone()
-            }
-        };
-        out.inputs = out.whole.iter().map(given).collect();
         Some(out)
+    }
+
+    fn place(&self, wanted: Term) -> Option<usize> {
+        self.terms.iter().position(|term| *term == wanted)
+    }
+
+    /// How many terms, the last ones, say how it turns round.
+    pub(super) fn turning(&self) -> usize {
+        let terms = self.terms.iter();
+        terms.filter(|term| **term == Term::Turning).count()
     }
 
     fn add(&mut self, term: Term, speed: &Speed, about: f64) {
@@ -89,18 +102,43 @@ impl Rubbing {
         self.about.push(about);
     }
 
-    /// Takes what is known of friction off a force.
-    pub(super) fn take_off(&self, force: &mut [f64]) {
+    /// Takes what is known of friction off a force; what is left to be found becomes inputs.
+    /// A position shows the speed but roughly as it turns round.
+    pub(super) fn take_off(&mut self, force: &mut [f64], measured: Measured, period_s: f64) {
         for (input, about) in self.whole.iter().zip(&self.about) {
             for (slot, x) in force.iter_mut().zip(input) {
                 *slot -= about * x;
             }
+        }
+        self.inputs = std::mem::take(&mut self.whole);
+        // One way the noise of the speed is large next to its changes. It is that of the motion
+        // too, and a model that has the one as an input makes the other of it.
+        if self.is_one_way() {
+            for input in &mut self.inputs {
+                *input = in_band(input, period_s);
+            }
+        }
+        let sign = self.place(Term::Coulomb);
+        if let Some(at) = sign.filter(|_| measured == Measured::Position) {
+            let sign = self.inputs.get(at).map_or(&[][..], Vec::as_slice);
+            let turning = [[-0.5, 0.0, 0.5], [1.0, -2.0, 1.0]].map(|by| next_to_each(sign, by));
+            self.terms.extend([Term::Turning; 2]);
+            self.inputs.extend(turning);
         }
     }
 
     /// Motion one way shows no Coulomb friction.
     fn is_one_way(&self) -> bool {
         self.slow.as_ref().is_some_and(|it| it.coulomb.is_none())
+    }
+
+    /// What was taken off a force beforehand, where that is viscous friction alone, of a motion
+    /// to and fro.
+    pub(super) fn viscous_alone(&self) -> Option<f64> {
+        match (self.terms.as_slice(), self.about.as_slice()) {
+            ([Term::Viscous], [about]) if !self.is_one_way() => Some(*about),
+            _ => None,
+        }
     }
 
     /// Whether the speed is a sum of accelerations.
@@ -117,13 +155,12 @@ impl Rubbing {
         let Some(slow) = &self.slow else {
             return [None; 2];
         };
-        let place = |wanted: Term| self.terms.iter().position(|term| *term == wanted);
-        if place(Term::Coulomb).is_some() || self.is_one_way() {
+        if self.place(Term::Coulomb).is_some() || self.is_one_way() {
             let viscous = slow.viscous;
             let is_sure = sureness(viscous.value, viscous.std) > certainty::FRICTION_TERM;
             return [is_sure.then_some(viscous), slow.coulomb];
         }
-        let viscous = place(Term::Viscous).and_then(|at| {
+        let viscous = self.place(Term::Viscous).and_then(|at| {
             let (about, found) = (self.about.get(at)?, found.get(at)?);
             // Coulomb friction that does not show may be there.
             let unseen = slow.coulomb.map_or(0.0, |coulomb| coulomb.std);
@@ -169,7 +206,7 @@ impl Term {
     fn input(self, speed: &Speed) -> Vec<f64> {
         match self {
             Self::Viscous => speed.means().to_vec(),
-            Self::Coulomb => between(&speed.smooth, mean_sign),
+            Self::Coulomb | Self::Turning => between(&speed.smooth, mean_sign),
             Self::Drift => {
                 let samples = speed.plain.len();
                 let n = samples.max(1) as f64;

@@ -12,6 +12,7 @@ use super::candidate_models::{Given, ONE, cancelled};
 use super::data::Data;
 use super::delay_profile::{Bounds, doubt_s, profile};
 use super::estimate::Estimate;
+use super::friction_loop::{self, FrictionLoop, Passed};
 use super::integrated;
 use super::measured_noise::Noise;
 use super::mode_starts;
@@ -45,6 +46,8 @@ pub struct Found {
     pub delay_doubt_s: f64,
     /// What made the noise white.
     pub noise: Noise,
+    /// The loop through which it came, where friction made one.
+    pub friction_loop: Option<FrictionLoop>,
     /// The measured frequency response.
     pub response: FrequencyResponse,
 }
@@ -54,17 +57,20 @@ pub struct Found {
 pub fn search(data: &Data<'_>, instrument: Option<&[f64]>, given: Given) -> Option<Found> {
     let response = response_of(data, instrument, None)?;
     let compared = compared(data, &response);
+    // How an axis turns round says nothing of its modes.
+    let straight = data.without_turning();
     let chosen = if !data.from_command && data.measured.integrators() > 0 {
-        integrated::choose(data, &response, compared, given)?
+        integrated::choose(&straight, &response, compared, given)?
     } else {
-        choose(data, &response, compared, given)?
+        choose(&straight, &response, compared, given)?
     };
-    let (estimate, noise) = on_all(data, &chosen, given)?;
+    let (estimate, noise, friction_loop) = on_all(data, &chosen, given)?;
     Some(Found {
         estimate,
         delay_is_free: chosen.delay_is_free,
         delay_doubt_s: chosen.delay_doubt_s,
         noise,
+        friction_loop,
         response,
     })
 }
@@ -185,15 +191,34 @@ fn timed(
 }
 
 /// The last fit, on all samples, and the noise that goes with it.
-fn on_all(raw: &Data<'_>, chosen: &Chosen, given: Given) -> Option<(Estimate, Noise)> {
+fn on_all(
+    raw: &Data<'_>,
+    chosen: &Chosen,
+    given: Given,
+) -> Option<(Estimate, Noise, Option<FrictionLoop>)> {
+    let noise = chosen.noise.clone().closer(raw, &chosen.found.transfer);
+    let best = next_to_noise(raw, chosen, given, &noise)?;
+    let passed = friction_loop::fitted(raw, &noise, chosen.delay_is_free, &best);
+    Some(match passed {
+        Some(Passed {
+            found,
+            noise,
+            through,
+        }) => (found, noise, Some(through)),
+        None => (best, noise, None),
+    })
+}
+
+/// The last fit next to this noise.
+fn next_to_noise(raw: &Data<'_>, chosen: &Chosen, given: Given, noise: &Noise) -> Option<Estimate> {
     let found = &chosen.found.transfer;
-    let noise = chosen.noise.clone().closer(raw, found);
     let leaky = noise.held(raw);
     let data = leaky.as_ref().map_or(*raw, |leaky| leaky.data(raw));
     let fitting = Fitting::new(data, &noise.taps);
     let is_open = given.order.is_none() && given.zeros.is_none();
+    let head = data.without_turning().head(CHOSEN);
     let less = (is_open && !data.friction.is_empty())
-        .then(|| next_to_friction::without_its_pairs(&data.head(CHOSEN), &noise.taps, chosen));
+        .then(|| next_to_friction::without_its_pairs(&head, &noise.taps, chosen));
     let found = less.as_ref().unwrap_or(found);
     let fit = |from: &TransferFunction| {
         fitting.settled(fitting.refine(from, chosen.delay_is_free, Effort::FULL)?)
@@ -206,8 +231,13 @@ fn on_all(raw: &Data<'_>, chosen: &Chosen, given: Given) -> Option<(Estimate, No
             best = less.unwrap_or(best);
         }
     }
+    drop(fitting);
     let best = next_to_friction::with_errors_of_bursts(&data, &noise.taps, best);
-    Some((best, noise))
+    Some(next_to_friction::with_errors_of_turning(
+        &data,
+        &noise.taps,
+        best,
+    ))
 }
 
 /// How far the first round or a later one goes.

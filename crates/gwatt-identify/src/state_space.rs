@@ -195,6 +195,20 @@ impl Sampled {
     pub fn order(&self) -> usize {
         self.order
     }
+
+    /// Whole periods of delay.
+    #[must_use]
+    pub(super) fn lag(&self) -> usize {
+        self.lag
+    }
+
+    /// By how much an input that is held changes the measured output at the next sample.
+    #[must_use]
+    pub(super) fn at_once(&self) -> f64 {
+        let moved: f64 = self.c.iter().zip(&self.now).map(|(c, x)| c * x).sum();
+        let powers = i32::try_from(self.measured.integrators()).unwrap_or_default();
+        moved / self.period_s.powi(powers)
+    }
 }
 
 /// `e^(A·t)` and `∫₀ᵗ e^(A·s) ds · B`.
@@ -279,12 +293,14 @@ impl Simulation {
                 .copied()
                 .unwrap_or(0.0)
         };
-        let (u, u_before) = (at(0), at(1));
+        self.advance(at(0), at(1))
+    }
+
+    /// Output at the next sample, where the input after the delay is `u`, and was `u_before`.
+    pub(super) fn advance(&mut self, u: f64, u_before: f64) -> f64 {
+        let system = &self.system;
         let direct = if system.direct_is_late { u_before } else { u };
-        let mut y = system.d * direct;
-        for (c, x) in system.c.iter().zip(&self.state) {
-            y += c * x;
-        }
+        let y = system.d * direct + self.swung();
         for (i, row) in system.phi.chunks_exact(system.order.max(1)).enumerate() {
             let mut sum = 0.0;
             for (p, x) in row.iter().zip(&self.state) {
@@ -297,19 +313,38 @@ impl Simulation {
             }
         }
         std::mem::swap(&mut self.state, &mut self.next);
-        self.difference(y)
+        let difference = self.difference(y);
+        self.last = [y, self.last[0]];
+        let needed = self.system.measured.integrators();
+        self.seen = self.seen.saturating_add(1);
+        if self.seen > needed { difference } else { 0.0 }
     }
 
-    fn difference(&mut self, y: f64) -> f64 {
+    /// What the states make of the output.
+    fn swung(&self) -> f64 {
+        let pairs = self.system.c.iter().zip(&self.state);
+        pairs.map(|(c, x)| c * x).sum()
+    }
+
+    fn difference(&self, y: f64) -> f64 {
         let [before, earlier] = self.last;
-        self.last = [y, before];
-        self.seen = self.seen.saturating_add(1);
         let t = self.system.period_s;
         match self.system.measured {
             Measured::Direct => y,
-            Measured::Velocity if self.seen > 1 => (y - before) / t,
-            Measured::Position if self.seen > 2 => (y - 2.0 * before + earlier) / (t * t),
-            _ => 0.0,
+            Measured::Velocity => (y - before) / t,
+            Measured::Position => (y - 2.0 * before + earlier) / (t * t),
+        }
+    }
+
+    /// Output at the next sample of a system from rest that does not see its input at once.
+    pub(super) fn foreseen(&self) -> f64 {
+        self.difference(self.swung())
+    }
+
+    /// As if the input since the sample before had been so much more.
+    pub(super) fn add(&mut self, more: f64) {
+        for (state, now) in self.state.iter_mut().zip(&self.system.now) {
+            *state += now * more;
         }
     }
 }

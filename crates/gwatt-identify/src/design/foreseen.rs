@@ -103,6 +103,8 @@ impl Foreseen {
             input: &input,
             friction: &friction,
             output: &output,
+            viscous: None,
+            turning: 0,
             undisturbed: None,
             period_s: known.period_s,
             measured: known.measured,
