@@ -60,23 +60,16 @@ impl Control<'_> {
             Motion::Linear => true,
             _ => return None,
         };
-        let mut feed = None;
-        if let Some(word) = straight.feed_word {
-            feed = Some(plain_feed(word, text, self.modal.mm_per_unit)?);
-        }
+        let feed = match straight.feed_word {
+            Some(word) => Some(plain_feed(word, text, self.modal.mm_per_unit)?),
+            None => None,
+        };
         let Straight { end, moving, .. } = &straight;
         let way = self.direct_way(end, *moving)?;
-        let (kind, feed_mm_s) = if uses_feed {
-            let feed = feed.as_ref().or(self.modal.feed.as_ref())?;
-            (MoveKind::Feed, self.straight_speed(feed, end, way)?)
-        } else if self.beam_waits_for_feed() {
-            return None;
-        } else {
-            (MoveKind::Rapid, f64::INFINITY)
-        };
+        let (kind, feed_mm_s) = self.direct_speed(uses_feed, feed.as_ref(), end, way)?;
 
-        let extruded_mm = end[EXTRUDER] - self.position.at[EXTRUDER];
-        let path_accel_mm_s2 = self.path_accel(*moving, extruded_mm);
+        let known = AxisSet::default();
+        let (accel_mm_s2, path_accel_mm_s2) = self.accels(kind, *moving, end, known);
         // From here on, it happens.
         (self.moved, self.printer.stands, self.printer.pending) = (true, false, *moving);
         steps.push(Step::Move(Move {
@@ -88,14 +81,14 @@ impl Control<'_> {
             start: self.position.at,
             end: *end,
             moving: *moving,
-            unknown_start: AxisSet::default(),
-            assumed_start: AxisSet::default(),
+            unknown_start: known,
+            assumed_start: known,
             arc: None,
             length_mm: way.0,
             feed_mm_s,
             feed_excess: 1.0,
             feed_mode: FeedMode::PerMinute,
-            accel_mm_s2: self.axes_accel(kind, *moving, path_accel_mm_s2),
+            accel_mm_s2,
             path_accel_mm_s2,
             jerk_factor: self.knobs.jerk_of(*moving),
             rapid_factor: self.knobs.rapid_factor,
@@ -129,6 +122,23 @@ impl Control<'_> {
             self.modal.feed = feed;
         }
         Some(())
+    }
+
+    /// What kind of move it is and its speed; `feed`: the F of its block. `None` also for a rapid
+    /// while a laser is lit.
+    #[inline]
+    fn direct_speed(
+        &self,
+        uses_feed: bool,
+        feed: Option<&Feed>,
+        end: &AxisValues,
+        way: (f64, bool),
+    ) -> Option<(MoveKind, f64)> {
+        if uses_feed {
+            let feed = feed.or(self.modal.feed.as_ref())?;
+            return Some((MoveKind::Feed, self.straight_speed(feed, end, way)?));
+        }
+        (!self.beam_waits_for_feed()).then_some((MoveKind::Rapid, f64::INFINITY))
     }
 
     /// The way to `end`: its length and whether linear axes move; `None` where a laser may wait for

@@ -322,21 +322,7 @@ impl Control<'_> {
                 self.printer_speed(run, &course, feed_mm_s, given_mm_s.is_some());
             rapid_factor *= self.speed_factor(&course, kind == MoveKind::Rapid);
         }
-        let extruded_mm = if unknown_start.contains(EXTRUDER) {
-            f64::NAN
-        } else {
-            end[EXTRUDER] - self.position.at[EXTRUDER]
-        };
-        let path_accel_mm_s2 = self.path_accel(commanded, extruded_mm);
-        let mut accel_mm_s2 = self.axes_accel(kind, commanded, path_accel_mm_s2);
-        if !unknown_start.is_empty() {
-            hold_to_path(self.machine, &mut accel_mm_s2, path_accel_mm_s2);
-            let [.., alone] = self.knobs.path_accel_mm_s2;
-            let printer = &self.machine.controller.language.printer;
-            if printer.may_retract(unknown_start) && alone.is_finite() {
-                accel_mm_s2[EXTRUDER] = accel_mm_s2[EXTRUDER].max(alone);
-            }
-        }
+        let (accel_mm_s2, path_accel_mm_s2) = self.accels(kind, commanded, end, unknown_start);
         run.facts.beam_is_lit |= kind == MoveKind::Rapid && self.beam_waits_for_feed();
         let strays = |arc| stray::of_arc(arc, &self.position.at, end);
         let stray = arc.as_ref().map_or(Stray::NONE, strays);
@@ -406,40 +392,52 @@ impl Control<'_> {
         })
     }
 
-    /// The limit of acceleration along the path of a move by which the extruder goes on by
-    /// `extruded_mm`; not a number where that is not known.
+    /// The limits of acceleration of a move of these axes: those of the axes, and that along the
+    /// path. One of the extruder alone may have that along the path in place of its own.
     #[inline]
-    pub(super) fn path_accel(&self, moving: AxisSet, extruded_mm: f64) -> f64 {
-        let printer = &self.machine.controller.language.printer;
-        let [prints, travels, alone] = self.knobs.path_accel_mm_s2;
-        if moving.0 & !printer.path_accel_spares.0 == 0 {
-            alone
-        } else if !moving.contains(EXTRUDER) {
-            travels
-        } else if !printer.drawing_back_travels || extruded_mm > 0.0 {
-            prints
-        } else if extruded_mm.is_nan() {
-            prints.max(travels)
-        } else {
-            travels
-        }
-    }
-
-    /// The limits of acceleration of the axes in a move. One of the extruder alone may have
-    /// that along the path in place of its own.
-    #[inline]
-    pub(super) fn axes_accel(
+    pub(super) fn accels(
         &self,
         kind: MoveKind,
         moving: AxisSet,
-        path_mm_s2: f64,
-    ) -> AxisValues {
-        let mut accel_mm_s2 = *self.knobs.accel(kind);
+        end: &AxisValues,
+        unknown_start: AxisSet,
+    ) -> (AxisValues, f64) {
         let printer = &self.machine.controller.language.printer;
+        let mut accel_mm_s2 = *self.knobs.accel(kind);
+        let extruded_mm = end[EXTRUDER] - self.position.at[EXTRUDER];
+        let is_known = !unknown_start.contains(EXTRUDER);
+        let path_mm_s2 = self.path_accel(moving, is_known.then_some(extruded_mm));
         if printer.retracts(moving, path_mm_s2) {
             accel_mm_s2[EXTRUDER] = path_mm_s2;
         }
-        accel_mm_s2
+        if !unknown_start.is_empty() {
+            hold_to_path(self.machine, &mut accel_mm_s2, path_mm_s2);
+            let [.., alone] = self.knobs.path_accel_mm_s2;
+            if printer.may_retract(unknown_start) && alone.is_finite() {
+                accel_mm_s2[EXTRUDER] = accel_mm_s2[EXTRUDER].max(alone);
+            }
+        }
+        (accel_mm_s2, path_mm_s2)
+    }
+
+    /// The limit of acceleration along the path of a move by which the extruder goes on by
+    /// `extruded_mm`, where that is known.
+    #[inline]
+    fn path_accel(&self, moving: AxisSet, extruded_mm: Option<f64>) -> f64 {
+        let printer = &self.machine.controller.language.printer;
+        let [prints, travels, alone] = self.knobs.path_accel_mm_s2;
+        if moving.0 & !printer.path_accel_spares.0 == 0 {
+            return alone;
+        }
+        if !moving.contains(EXTRUDER) {
+            return travels;
+        }
+        match extruded_mm {
+            _ if !printer.drawing_back_travels => prints,
+            Some(extruded_mm) if extruded_mm > 0.0 => prints,
+            Some(_) => travels,
+            None => prints.max(travels),
+        }
     }
 }
 
