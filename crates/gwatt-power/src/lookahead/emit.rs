@@ -280,9 +280,9 @@ impl Open {
         [before.unwrap_or(self), self, next.unwrap_or(self)].map(|open| open.axes_accel(machine))
     }
 
-    /// The largest acceleration of each axis. Where it is limits that may act early which leave it
-    /// in doubt, and joints are steps of speed, that of the path, and on top of it the steps that may
-    /// fall within the response time, as their mean over it.
+    /// The largest acceleration of each axis. Where limits may act early and joints are steps of
+    /// speed, that of the path, and on top of it the steps that may fall within the response time, as
+    /// their mean over it; what is in doubt by something else keeps that of the axes.
     fn axes_accel(&self, machine: &Machine) -> AxisValues {
         let mv = self.at_most();
         let mut accel_mm_s2 = mv.accel_mm_s2;
@@ -290,12 +290,14 @@ impl Open {
             Corner::Steps(steps) => Some(steps),
             _ => SpeedSteps::of(machine),
         };
-        let known = mv.unknown_start.is_empty();
-        let (Some(steps), Some(largest_mm_s)) = (steps.filter(|_| known), self.step_mm_s) else {
+        let early = machine.controller.language.printer.early_limits;
+        let in_doubt = self.step_mm_s.is_some();
+        let follows = (in_doubt || early && self.certain) && mv.unknown_start.is_empty();
+        let Some(steps) = steps.filter(|_| follows) else {
             return accel_mm_s2;
         };
+        let largest_mm_s = self.step_mm_s.unwrap_or(0.0);
         let response_s = machine.path.response_time_s;
-        let most_mm_s = 2.0 * mv.feed_mm_s;
         let chords = machine
             .controller
             .planner
@@ -308,9 +310,13 @@ impl Open {
         };
         let joints = 1.0 + response_s * per_second;
         for (axis, step_mm_s) in SpeedSteps::AXES.into_iter().zip(steps.mm_s) {
-            let step_mm_s = (joints * step_mm_s.max(largest_mm_s)).min(most_mm_s);
+            // An F that is not known is infinite.
+            let rapid_mm_s = machine.axes[axis as usize].map_or(0.0, |it| it.rapid_mm_s);
+            let top_mm_s = mv.feed_mm_s.min(rapid_mm_s * mv.rapid_factor.max(1.0));
+            let step_mm_s = (joints * step_mm_s.max(largest_mm_s)).min(2.0 * top_mm_s);
             let own = &mut accel_mm_s2[axis as usize];
-            *own = own.min(mv.path_accel_mm_s2) + step_mm_s / response_s;
+            let most = own.min(mv.path_accel_mm_s2) + step_mm_s / response_s;
+            *own = if in_doubt { most } else { most.min(*own) };
         }
         accel_mm_s2
     }
