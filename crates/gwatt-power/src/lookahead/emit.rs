@@ -282,7 +282,7 @@ impl Open {
 
     /// The largest acceleration of each axis. Where limits may act early and joints are steps of
     /// speed, that of the path, and on top of it the steps that may fall within the response time, as
-    /// their mean over it; what is in doubt by something else keeps that of the axes.
+    /// their mean over it: no more than that of the axes, unless such limits leave it in doubt.
     fn axes_accel(&self, machine: &Machine) -> AxisValues {
         let mv = self.at_most();
         let mut accel_mm_s2 = mv.accel_mm_s2;
@@ -292,7 +292,7 @@ impl Open {
         };
         let early = machine.controller.language.printer.early_limits;
         let in_doubt = self.step_mm_s.is_some();
-        let follows = (in_doubt || early && self.certain) && mv.unknown_start.is_empty();
+        let follows = (in_doubt || early) && mv.unknown_start.is_empty();
         let Some(steps) = steps.filter(|_| follows) else {
             return accel_mm_s2;
         };
