@@ -236,8 +236,10 @@ impl Control<'_> {
         if self.loads_off | self.loads_hidden == 0 {
             return;
         }
-        let is_own = |step: &Step| matches!(step, Step::Move(mv) if mv.line == run.line);
-        if run.steps.iter().any(is_own) {
+        // A dwell shows them too, but not alone: `limit` may write one before a move.
+        let shows =
+            |step: &Step| matches!(step, Step::Move(mv) if mv.line == run.line && mv.moves_axes());
+        if run.steps.iter().any(shows) {
             self.loads_hidden = 0;
         }
         let off = self.loads_off & !self.loads_hidden;

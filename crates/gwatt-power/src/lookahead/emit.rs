@@ -43,8 +43,7 @@ impl Ahead {
                 self.open.pass();
                 continue;
             }
-            if (first + 1 >= finished || self.open.end() - first <= self.held_back) && !self.at_rest
-            {
+            if (first + 1 >= finished || self.waits_for_corners()) && !self.at_rest {
                 return;
             }
             let moves = |number: &u64| self.open.get(*number).is_some_and(|open| open.moves);
@@ -123,6 +122,19 @@ impl Ahead {
 }
 
 impl Ahead {
+    /// Whether other corners may be set yet for the first move that waits; lines that do not move
+    /// have no place in the control's queue.
+    #[inline]
+    fn waits_for_corners(&self) -> bool {
+        let held_back = self.held_back as usize;
+        if held_back == 0 {
+            return false;
+        }
+        let numbers = self.open.first()..self.open.end();
+        let moves = |number: &u64| self.open.get(*number).is_some_and(|open| open.moves);
+        numbers.filter(moves).take(held_back + 1).count() <= held_back
+    }
+
     /// The number of the first move that is not finished in one of the plans.
     #[inline]
     fn finished(&self) -> u64 {
@@ -310,12 +322,18 @@ impl Open {
         };
         let joints = 1.0 + response_s * per_second;
         for (axis, step_mm_s) in SpeedSteps::AXES.into_iter().zip(steps.mm_s) {
-            // An F that is not known is infinite.
+            // An extruder may go further than the path is long. An F that is not known is infinite.
+            let way_mm = (mv.end[axis as usize] - mv.start[axis as usize]).abs();
+            let share = if way_mm > mv.length_mm {
+                way_mm / mv.length_mm
+            } else {
+                1.0
+            };
             let rapid_mm_s = machine.axes[axis as usize].map_or(0.0, |it| it.rapid_mm_s);
-            let top_mm_s = mv.feed_mm_s.min(rapid_mm_s * mv.rapid_factor.max(1.0));
+            let top_mm_s = (share * mv.feed_mm_s).min(rapid_mm_s * mv.rapid_factor.max(1.0));
             let step_mm_s = (joints * step_mm_s.max(largest_mm_s)).min(2.0 * top_mm_s);
             let own = &mut accel_mm_s2[axis as usize];
-            let most = own.min(mv.path_accel_mm_s2) + step_mm_s / response_s;
+            let most = own.min(share * mv.path_accel_mm_s2) + step_mm_s / response_s;
             *own = if in_doubt { most } else { most.min(*own) };
         }
         accel_mm_s2
