@@ -118,7 +118,7 @@ fn modal_calls_in_each_other() {
     ");
 }
 
-/// No document says which of two blocks of one number G70 goes back to.
+/// Which of two blocks of one number G70 goes back to is known where a roughing cycle has read one.
 #[test]
 fn contours_of_one_number() {
     let contour = |x: u32| {
@@ -128,9 +128,16 @@ fn contours_of_one_number() {
     };
     let finish = "G70 P10 Q20\n";
     let start = "G97 S500 M3\n";
-    let twice = format!("{start}{}{finish}{}", contour(40), contour(30));
-    assert_snapshot!(moves("fanuc-lathe", &twice), @r"
-    8 contour: N10 stands in line 5 and in line 12: which contour G70 takes is not known
+    // That of the roughing cycle before it.
+    let before = format!("{start}{}{finish}", contour(40));
+    let twice = format!("{before}{}", contour(30));
+    let both = moves("fanuc-lathe", &twice);
+    assert!(both.starts_with(&moves("fanuc-lathe", &before)), "{both}");
+    // Without one.
+    let alone = |x: u32| format!("N10 G0 X{x}.\nG1 Z-20. F0.2\nN20 X60.\n");
+    let neither = format!("{start}G0 X60. Z2.\n{}{finish}{}", alone(40), alone(30));
+    assert_snapshot!(moves("fanuc-lathe", &neither), @r"
+    6 contour: N10 stands in line 3 and in line 7: which contour G70 takes is not known
     ");
     let once = format!("{start}{}{finish}", contour(40));
     assert!(moves("fanuc-lathe", &once).contains("feed"));

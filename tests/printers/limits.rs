@@ -240,6 +240,18 @@ fn corners_may_be_set_for_moves_that_wait() {
     assert!(exact < 0.9 * full, "{exact} {full}");
 }
 
+/// An extruder that goes 45 times as far as X, which is the path, accelerates 45 times as fast.
+#[test]
+fn an_extruder_that_goes_further_than_the_path() {
+    let program = |first: u32| {
+        format!(
+            "M83\nM204 P{first} T{first}\nM566 X0.6 Y0.6 Z0.6 E0.6\nG1 X1 F60\nG1 X3 E90 F6000\nM204 P20 T20\nG1 X10 F60\n"
+        )
+    };
+    let [early, full] = [2, 20].map(|first| peak_w("reprap", &program(first)));
+    assert!(early >= full * (1.0 - 1e-9), "{early} {full}");
+}
+
 /// RepRapFirmware sees more or fewer moves, as time goes. Of 1 mm at 50 mm/s² it is as fast as it can
 /// stop in those that it sees: √(2·50·29) = 54 mm/s to 77 mm/s. Peaks are those of the worst.
 #[test]

@@ -233,7 +233,8 @@ impl<'m> Interpreter<'m> {
             self.control.compensate(&mut run, before, errors);
         }
         self.control.let_knobs_act(&mut run, before);
-        self.control.settle_loads(&run);
+        let own = run.steps.get(before..).unwrap_or_default();
+        self.control.settle_loads(own);
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);
             self.control.transfer = None;

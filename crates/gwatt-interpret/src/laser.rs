@@ -40,17 +40,7 @@ impl Control<'_> {
         if !self.beam_is_constant() || moves_by_words(run) {
             return;
         }
-        let feeds =
-            |motion: Motion| matches!(motion, Motion::Linear | Motion::ArcCw | Motion::ArcCcw);
-        let words = run.block.words.iter();
-        let motion = words
-            .rev()
-            .find_map(|word| match (word.letter, word.value) {
-                (b'G', 0.0 | 80.0) => Some(false),
-                (b'G', 1.0 | 2.0 | 3.0) => Some(true),
-                _ => None,
-            });
-        if motion.is_some_and(|feed| feed != feeds(self.modal.motion)) {
+        if named_motion(run).is_some_and(|feed| feed != feeds(self.modal.motion)) {
             run.act(ActionKind::BeamMayStop, 0.0);
         }
     }
@@ -79,9 +69,19 @@ impl Control<'_> {
         let lit = self.switches.spindle != BEAM_OFF && self.modal.spindle_rpm != 0.0;
         lit && match self.machine.controller.queue.laser_mode {
             LaserMode::On => true,
-            LaserMode::Unknown => self.switches.spindle == DYNAMIC || self.switches.speed_in_motion,
+            LaserMode::Unknown => self.switches.spindle == DYNAMIC || self.switches.laser_seen,
             LaserMode::Off => false,
         }
+    }
+
+    /// M4 shows that there is a laser, for the rest of the program.
+    pub(super) fn look_for_laser(&mut self) {
+        self.switches.laser_seen |= self.switches.spindle == DYNAMIC;
+    }
+
+    /// Whether a block feeds, by its own motion word or the one in force.
+    pub(super) fn feeds(&self, run: &Run<'_, '_>) -> bool {
+        named_motion(run).unwrap_or_else(|| feeds(self.modal.motion))
     }
 
     fn beam_is_constant(&self) -> bool {
@@ -98,4 +98,19 @@ fn moves_by_words(run: &Run<'_, '_>) -> bool {
         .iter()
         .any(|word| word.letter == b'G' && other(word.value));
     run.words.has_axes() && !taken
+}
+
+/// Whether the motion word of a block, if it has one, is that of a feed.
+fn named_motion(run: &Run<'_, '_>) -> Option<bool> {
+    let words = run.block.words.iter().rev();
+    let mut motions = words.filter_map(|word| match (word.letter, word.value) {
+        (b'G', 0.0 | 80.0) => Some(false),
+        (b'G', 1.0 | 2.0 | 3.0) => Some(true),
+        _ => None,
+    });
+    motions.next()
+}
+
+fn feeds(motion: Motion) -> bool {
+    matches!(motion, Motion::Linear | Motion::ArcCw | Motion::ArcCcw)
 }

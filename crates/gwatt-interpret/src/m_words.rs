@@ -22,6 +22,7 @@ impl Control<'_> {
 
     pub(super) fn speed_and_tool(&mut self, run: &mut Run<'_, '_>) {
         self.spindle_mode(run);
+        self.look_for_laser();
         self.beam_between_lines(run);
         let other = run
             .words
@@ -40,7 +41,7 @@ impl Control<'_> {
         {
             self.set_speed(value, run);
             let kind = self.kind_of_speed(run);
-            self.switches.speed_in_motion = kind == ActionKind::SpeedInMotion;
+            self.switches.laser_seen |= kind == ActionKind::SpeedInMotion && self.feeds(run);
             run.act(kind, value);
             self.note_spindle(run);
         }
@@ -231,15 +232,14 @@ impl Control<'_> {
         }
     }
 
-    /// The end of a line: what it switches off is off, once a move has shown what that draws.
-    pub(super) fn settle_loads(&mut self, run: &Run<'_, '_>) {
+    /// The end of a line with these steps: what it switches off is off, once a move has shown what
+    /// that draws.
+    pub(super) fn settle_loads(&mut self, steps: &[Step]) {
         if self.loads_off | self.loads_hidden == 0 {
             return;
         }
         // A dwell shows them too, but not alone: `limit` may write one before a move.
-        let shows =
-            |step: &Step| matches!(step, Step::Move(mv) if mv.line == run.line && mv.moves_axes());
-        if run.steps.iter().any(shows) {
+        if steps.iter().any(Step::moves_axes) {
             self.loads_hidden = 0;
         }
         let off = self.loads_off & !self.loads_hidden;

@@ -238,7 +238,7 @@ impl Control<'_> {
         let machine_coordinates = run.facts.machine_coordinates;
         if let Some(unknown) = self.targets(run, machine_coordinates, &mut end) {
             if self.printer.adjusts {
-                self.scale_extrusion(run, &mut end, unknown);
+                self.scale_extrusion(run, &mut end, unknown, AxisSet::default());
             }
             self.go(run, kind, &end, unknown, None);
         }

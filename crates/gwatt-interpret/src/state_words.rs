@@ -16,8 +16,8 @@ use super::spindle_speed::SpindleMode;
 pub(super) struct Switches {
     /// M3, M4 or M5.
     pub(super) spindle: u16,
-    /// S was set last in a block that moves.
-    pub(super) speed_in_motion: bool,
+    /// M4, or an S in a block that feeds, has shown that there is a laser.
+    pub(super) laser_seen: bool,
     pub(super) mist: bool,
     pub(super) flood: bool,
     pub(super) feed_override: bool,
@@ -30,7 +30,7 @@ impl Default for Switches {
     fn default() -> Self {
         Self {
             spindle: 5,
-            speed_in_motion: false,
+            laser_seen: false,
             mist: false,
             flood: false,
             feed_override: true,

@@ -31,6 +31,8 @@ pub(crate) struct Reader<'t> {
     pub(crate) tape: Tape,
     /// What ROUND of Fanuc's macros does here.
     pub(crate) round: Function,
+    /// ROUND was used, and what it does depends on the unit in force.
+    pub(crate) rounds_by_unit: bool,
     /// An inverse function was used whose value depends on a setting that is not known.
     pub(crate) unsure_angle: bool,
     /// The place of one whose value differs by it.
@@ -94,6 +96,7 @@ impl<'t> Reader<'t> {
             cursor,
             tape: Tape::default(),
             round: Function::Round,
+            rounds_by_unit: false,
             unsure_angle: false,
             unsure_angle_at: None,
             passes_on: false,
@@ -247,7 +250,11 @@ impl<'t> Reader<'t> {
         if self.peek() == Some(b'<') {
             return self.angle_name().map(Name::Text);
         }
-        let value = self.value(variables)?;
+        // The number of a parameter is arithmetic, wherever it stands.
+        let round = std::mem::replace(&mut self.round, Function::Round);
+        let value = self.value(variables);
+        self.round = round;
+        let value = value?;
         let Some(number) = parameter_number(value) else {
             let value = value.unwrap_or(0.0);
             let message = format!("{value} is not the number of a parameter");
@@ -431,6 +438,11 @@ impl<V: Variables> WithVariables<'_, '_, V> {
         };
         let result = function.and_then(|function| {
             let function = self.as_set(function);
+            let by_unit = matches!(
+                function,
+                Function::RoundThousandth | Function::RoundTenThousandth
+            );
+            self.reader.rounds_by_unit |= by_unit;
             self.reader.tape.push(Op::Of(function));
             function.apply(values)
         });

@@ -34,8 +34,16 @@ impl Flow {
         block: &Block,
         effects: &mut Effects<'_>,
     ) -> Result<(), FlowError> {
-        let first = self.find_block(contour.first, self.next)?;
-        if contour.cycle == ContourCycle::Finish {
+        let finishes = contour.cycle == ContourCycle::Finish;
+        let numbers = [contour.first, contour.last];
+        let roughed = self.roughed.filter(|it| finishes && it.0 == numbers);
+        let first = match roughed {
+            Some((_, place)) => place,
+            None => self.find_block(contour.first, self.next)?,
+        };
+        if !finishes {
+            self.roughed = Some((numbers, first));
+        } else if roughed.is_none() {
             self.refuse_second_contour(contour.first, first)?;
         }
         let before = interpreter.before_contour(contour);
@@ -96,8 +104,8 @@ impl Flow {
         Ok(())
     }
 
-    /// A finishing cycle comes after its contour or before it: where two blocks have the number
-    /// of the first block, no document says which of them a control takes.
+    /// A finishing cycle takes the contour of the roughing cycle before it. Without one, and where
+    /// two blocks have the number of the first block, it is not known which of them a control takes.
     fn refuse_second_contour(&mut self, number: u64, found: Place) -> Result<(), FlowError> {
         let Some(text) = self.texts.get_mut(found.text) else {
             return Ok(());

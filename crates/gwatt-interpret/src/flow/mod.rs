@@ -59,6 +59,9 @@ pub struct Flow {
     undecided: Option<Label>,
     /// The macro that each block which moves calls (G66).
     modal: Option<Call>,
+    /// The numbers of the blocks of the contour that a turning cycle roughed last, and where it
+    /// begins.
+    roughed: Option<([u64; 2], Place)>,
     /// The same by its name, and calls that are open where it was set (MODIN).
     modal_named: Option<(String, usize)>,
     repeated_moves: u64,
@@ -142,6 +145,7 @@ impl Flow {
             broke: false,
             undecided: None,
             modal: None,
+            roughed: None,
             modal_named: None,
             repeated_moves: 0,
             idle_lines: 0,

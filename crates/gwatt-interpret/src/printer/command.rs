@@ -41,6 +41,7 @@ impl Control<'_> {
             let limits = early.then(|| self.knobs.clone());
             let factors = [self.printer.feed_factor, self.printer.flow];
             let next = self.one_command(run, text, index > 0);
+            self.settle_loads(run.steps.get(so_far..).unwrap_or_default());
             let moves = |steps: &[Step]| steps.iter().any(|step| matches!(step, Step::Move(_)));
             // The firmware waits for the axes before it runs a file that may set limits.
             let own = run.steps.get(so_far..).unwrap_or_default();
@@ -51,7 +52,7 @@ impl Control<'_> {
                 }
             }
             if early && !self.printer.stands {
-                self.early_factors(run, pending, factors);
+                self.early_factors(run, factors);
             }
             let (earlier, own) = run.steps.split_at_checked(so_far).unwrap_or_default();
             if index > 0 && moves(own) && earlier.get(before..).is_some_and(moves) {
@@ -62,7 +63,6 @@ impl Control<'_> {
             };
             text = text.from(next);
         }
-        self.settle_loads(run);
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);
         }

@@ -22,18 +22,9 @@ impl Control<'_> {
 }
 
 impl Control<'_> {
-    /// M220 and M221 change the move that waits, unless it is one of the extruder alone
-    /// (GCodes2.cpp, case 220; RawMove.cpp). `before`: the factors of feed and filament.
-    pub(super) fn early_factors(
-        &self,
-        run: &mut Run<'_, '_>,
-        pending: AxisSet,
-        [feed, flow]: [f64; 2],
-    ) {
-        let spares = self.machine.controller.language.printer.feed_factor_spares;
-        if pending.0 & !spares.0 == 0 {
-            return;
-        }
+    /// M220 and M221 change the move that waits (GCodes2.cpp, case 220; RawMove.cpp), also counted
+    /// for one of the extruder alone, which they leave. The factors of feed and filament before.
+    pub(super) fn early_factors(&self, run: &mut Run<'_, '_>, [feed, flow]: [f64; 2]) {
         for (limits, factor) in [
             (EarlyLimits::Feed, self.printer.feed_factor / feed),
             (EarlyLimits::Filament, self.printer.flow / flow),

@@ -119,8 +119,9 @@ impl Control<'_> {
         run: &Run<'_, '_>,
         end: &mut AxisValues,
         unknown: AxisSet,
+        turning: AxisSet,
     ) {
-        let spared = self.is_spared(run, AxisSet::default());
+        let spared = self.is_spared(run, turning);
         let flow = if spared { 1.0 } else { self.printer.flow };
         let factor = flow * self.printer.volumetric;
         if factor == 1.0 || unknown.contains(EXTRUDER) {
