@@ -172,8 +172,8 @@ impl<'m> Interpreter<'m> {
         if self.control.passes_over(block, &mut report) {
             return;
         }
-        let language = self.control.language;
         let control = &mut self.control;
+        let language = control.language;
         if language.is_command(control, block, text) {
             let mut run = Run {
                 line,
@@ -233,8 +233,7 @@ impl<'m> Interpreter<'m> {
             self.control.compensate(&mut run, before, errors);
         }
         self.control.let_knobs_act(&mut run, before);
-        let own = run.steps.get(before..).unwrap_or_default();
-        self.control.settle_loads(own);
+        self.control.settle_loads(run.steps, before);
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);
             self.control.transfer = None;

@@ -232,14 +232,14 @@ impl Control<'_> {
         }
     }
 
-    /// The end of a line with these steps: what it switches off is off, once a move has shown what
-    /// that draws.
-    pub(super) fn settle_loads(&mut self, steps: &[Step]) {
+    /// The end of a line with the steps from `from` on: what it switches off is off, once a move has
+    /// shown what that draws.
+    pub(super) fn settle_loads(&mut self, steps: &[Step], from: usize) {
         if self.loads_off | self.loads_hidden == 0 {
             return;
         }
         // A dwell shows them too, but not alone: `limit` may write one before a move.
-        if steps.iter().any(Step::moves_axes) {
+        if steps.iter().skip(from).any(Step::moves_axes) {
             self.loads_hidden = 0;
         }
         let off = self.loads_off & !self.loads_hidden;
