@@ -150,8 +150,15 @@ fn rapids_stay_rapids_while_a_laser_is_lit() {
     let dark = lit.replace("G0 X80 Y60", "G0 X80 Y60 S0");
     let constant = lit.replace("M4 S1000\nG1 X5", "M3\nG1 S1000 X5");
     let spindle = lit.replace("M4", "M3");
+    // It stays a laser; an S with a rapid shows none.
+    let later = lit
+        .replace("M4 S1000\nG1 X5", "M3 S0\nG1 S1000 X5")
+        .replace("\nG0", "\nS900\nG0");
+    let first = lit.replace("M4 S1000\nG1 X5", "G0 X1 S1000 M3\nG1 X5");
     let [on, off, unknown] = ["laser_mode = true", "laser_mode = false", ""];
     for (mode, program, is_refused) in [
+        (unknown, later.as_str(), true),
+        (unknown, &first, false),
         (on, lit, true),
         (unknown, lit, true),
         (unknown, &constant, true),

@@ -4,6 +4,9 @@
 //! Sources: Fanuc B-64304EN ("Arithmetic and logic operation", "Modal call", "Programmable data
 //! input"), Haas mill operator's manual 96-8000, SINUMERIK "Fundamentals".
 
+use std::io::Cursor;
+
+use gwatt::pipeline::{LimitOptions, Options, limit};
 use insta::assert_snapshot;
 
 use crate::fanuc::{moves, notes};
@@ -73,6 +76,21 @@ fn round_in_an_address_keeps_its_decimals() {
     9 rapid X2.0009
     10 rapid X33.3699
     11 feed X58.7699 F5.0800
+    ");
+}
+
+/// A line that has run in metric lengths rounds to inches after G20; the number of a parameter is
+/// arithmetic.
+#[test]
+fn round_follows_the_unit_and_the_place() {
+    let runs = "M98 P2\n".repeat(4);
+    let sub = "O2\nG0 X[ROUND[#1]]\nM99\n";
+    let program = format!("G21 G90\n#1=1.23456\n{runs}G20\nM98 P2\nM30\n{sub}");
+    let last = moves("fanuc", &program);
+    // 1.2346 in.
+    assert!(last.trim_end().ends_with("X31.3588"), "{last}");
+    assert_snapshot!(moves("fanuc", "G21 G90\n#1=2.4\n#2=5.\nG0 X#[ROUND[#1]]\n"), @r"
+    4 rapid X5.0000
     ");
 }
 
@@ -232,4 +250,23 @@ fn what_happens_during_a_stop() {
     let rows = rows_of(&machine, "G21 G90\nG0 X1.\nM8\nM9\nG0 X2.\nG0 X30.\nM30\n");
     let last = rows.last().expect("a row");
     assert!(last.peak_w < 1600.0, "{}", last.peak_w);
+}
+
+/// A dwell that `limit` writes before a rapid shows a load no less than the rapid does.
+#[test]
+fn a_stop_that_is_written_leaves_loads_to_the_move() {
+    let machine = machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"fanuc\"\n[converter]\npeak_power_w = 10000\n\
+         [[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 500\n{}",
+        linear_axes("XYZ", [30000.0, 5000.0, 150.0], "")
+    ));
+    let program = "G21 G90 G94\nG0 X190. F100\nM8\nM9\nG0 X0 Z90.\nG0 Y5.\nM0\nM30\n";
+    let input = Cursor::new(program.as_bytes());
+    let (options, how) = (Options::default(), LimitOptions::default());
+    let found = limit(input, &machine, &options, how, &mut Vec::new(), None).expect("read");
+    assert!(
+        found.certified && found.edited_lines > 0,
+        "{:?}",
+        found.reasons
+    );
 }

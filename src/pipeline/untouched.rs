@@ -67,7 +67,7 @@ pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static s
              power_on_feed_mm_min under [language] of the machine file"
         }
         BEAM_IS_LIT => {
-            "write M5 or S0 before it; a machine without a laser has laser_mode = false under [path]"
+            "write M5 before it, or S0 in it; a machine without a laser has laser_mode = false under [path]"
         }
         FEED_MODE => {
             "write G94 or G95 before it; or say with which of them the machine begins: feed = \

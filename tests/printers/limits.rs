@@ -66,6 +66,13 @@ fn the_speed_factor_and_the_extruder() {
     assert_snapshot!(reprap("M220 S50\nG1 X0 E5 F600\n"), @r"
     2 feed E0.000>5.000 v5.000
     ");
+    // An arc names X and Y, whatever its words are.
+    let arcs = reprap("M83\nM221 S200\nG1 X10 F600\nG2 I5 E3\nG2 X10 Y0 I5 E3\n");
+    let fed: Vec<_> = arcs.lines().filter(|line| line.contains(" E")).collect();
+    assert!(
+        fed[0].contains("E0.000>6.000") && fed[1].contains("E6.000>12.000"),
+        "{arcs}"
+    );
     // M221 does the same.
     assert_snapshot!(reprap("M221 S50\nG1 E5 F600\nG1 X5 E9\n"), @r"
     2 feed E0.000>5.000 v10.000
@@ -238,6 +245,34 @@ fn corners_may_be_set_for_moves_that_wait() {
         .map(|(first, wait)| peak_w("reprap", &program(first, wait)));
     assert!(early >= full * (1.0 - 1e-9), "{early} {full}");
     assert!(exact < 0.9 * full, "{exact} {full}");
+}
+
+/// Lines that do not move have no place in that queue.
+#[test]
+fn lines_without_motion_do_not_fill_the_queue() {
+    let program = |still: &str, wait: &str| {
+        let zigzag = (1..8).map(|x| format!("G1 X{x} Y{} F18000\n", x % 2));
+        let slow = (8..30).map(|x| format!("G1 X{x} F600\n{}", still.replace('#', &x.to_string())));
+        let short: String = zigzag.chain(slow).collect();
+        format!("M566 X60 Y60\nG1 X0 Y1 F6000\n{short}{wait}M566 X6000 Y6000\nG1 X70 F600\n")
+    };
+    let [plain, still] =
+        ["", "G1 X#\nG1 X#\nG1 X#\nG1 X#\n"].map(|still| peak_w("reprap", &program(still, "")));
+    assert!(still >= plain * (1.0 - 1e-9), "{still} {plain}");
+    assert!(
+        plain > 2.0 * peak_w("reprap", &program("", "M400\n")),
+        "{plain}"
+    );
+}
+
+/// What a command switches on after a move in its line, that move does not show.
+#[test]
+fn loads_of_a_line_with_several_commands() {
+    let program = "M83\nG1 X5 F600 M106 S255\nM107\nG1 X9\n";
+    let alone = program.replace(" M106", "\nM106");
+    let [one, several] = [program, &alone].map(|text| peak_w("reprap", text));
+    assert_eq!(one, several);
+    assert!(one >= 5.0, "{one}");
 }
 
 /// An extruder that goes 45 times as far as X, which is the path, accelerates 45 times as fast.

@@ -7,7 +7,7 @@ use super::letters::bit;
 use super::places::STANDSTILL_MM;
 use super::turned_arc::Tilted;
 use gwatt_machine::units::MM_PER_INCH;
-use gwatt_machine::{ALL_AXES, ArcWithoutCenter, AxisKind, AxisSet};
+use gwatt_machine::{ALL_AXES, ArcWithoutCenter, AxisKind};
 use gwatt_motion::{Arc, MoveKind};
 use gwatt_syntax::source::Span;
 
@@ -23,9 +23,6 @@ pub(super) fn lone_arc(run: &mut Run<'_, '_>) {
         .error("arc-center", message, span)
         .help("write it in the block that moves; the control refuses it alone");
 }
-
-/// Axes that arcs of printers turn, whatever their words name.
-const XY: AxisSet = AxisSet(0b11);
 
 impl Control<'_> {
     /// Whether an arc without a centre and a radius stands for a line.
@@ -110,7 +107,7 @@ impl Control<'_> {
             }
             Some(Ok(arc)) => {
                 if self.printer.adjusts {
-                    self.scale_extrusion(run, &mut end, unknown, XY);
+                    self.scale_extrusion(run, &mut end, unknown, true);
                 }
                 self.go(run, MoveKind::Arc, &end, unknown, Some(arc));
             }

@@ -52,7 +52,7 @@ impl Control<'_> {
                 self.reset_modes(run);
             }
             self.ended |= kind == ActionKind::End;
-            if self.loads & self.loads_hidden != 0 {
+            if self.loads.are_hidden() {
                 // However long it lasts, what is on draws meanwhile.
                 self.dwell(run, 0.0);
             }

@@ -9,6 +9,7 @@ use super::compensation::{Choice, Compensation, Corners};
 use super::facts::Facts;
 use super::jump::Transfer;
 use super::knob::KnobState;
+use super::loads::Loads;
 use super::modal::Modal;
 use super::own_state::OwnState;
 use super::parameters::Parameters;
@@ -43,10 +44,7 @@ pub(super) struct Control<'m> {
     pub(super) position: Position,
     pub(super) knobs: KnobState,
     pub(super) special: Special,
-    pub(super) loads: u32,
-    pub(super) loads_off: u32,
-    /// Those that were switched on after the last move: none has shown them.
-    pub(super) loads_hidden: u32,
+    pub(super) loads: Loads,
     pub(super) tools: Tools,
     pub(super) programmed: Programmed,
     /// G16.

@@ -9,6 +9,7 @@ use super::facts::{Facts, TWO_OF_A_GROUP};
 use super::fast_path::is_direct;
 use super::knob::KnobState;
 use super::languages::language_of;
+use super::loads::Loads;
 use super::modal::Modal;
 use super::parameters::Parameters;
 use super::position::Position;
@@ -49,9 +50,7 @@ impl<'m> Interpreter<'m> {
             position: Position::new(machine, reading),
             knobs: KnobState::new(machine),
             special: Special::new(rules, reading),
-            loads: 0,
-            loads_off: 0,
-            loads_hidden: 0,
+            loads: Loads::default(),
             tools: Tools::new(reading.tools.clone()),
             programmed: Programmed::default(),
             polar: None,
@@ -233,7 +232,7 @@ impl<'m> Interpreter<'m> {
             self.control.compensate(&mut run, before, errors);
         }
         self.control.let_knobs_act(&mut run, before);
-        self.control.settle_loads(run.steps, before);
+        self.control.loads.end_line(run.steps, before);
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);
             self.control.transfer = None;

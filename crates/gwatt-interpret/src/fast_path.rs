@@ -94,7 +94,7 @@ impl Control<'_> {
             rapid_factor: self.knobs.rapid_factor,
             pace: 1.0,
             dwell_s: 0.0,
-            loads: self.loads,
+            loads: self.loads.on(),
             path_mode: self.modal.path_mode,
             corner: self.modal.corner,
             stray: Stray::NONE,
@@ -236,7 +236,7 @@ impl Control<'_> {
             && self.corners.is_none()
             && self.special.left.is_none()
             && self.pending_actions.is_empty()
-            && self.loads_hidden == 0
+            && !self.loads.are_hidden()
             && self.knobs.pending.is_none()
             && !self.knobs.is_paced()
             && self.callee.is_none()

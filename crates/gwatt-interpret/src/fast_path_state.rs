@@ -43,7 +43,7 @@ impl Control<'_> {
             apart: self.position.apart,
             frame: self.position.frame.clone(),
             knobs: self.knobs.clone(),
-            loads: self.loads,
+            loads: self.loads.on(),
             run: self.run,
             text: self.text,
         }

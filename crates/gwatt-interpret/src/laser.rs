@@ -61,7 +61,7 @@ impl Control<'_> {
     }
 
     /// Whether a beam that is off in G0 would burn along a feed in its place. Where it is not known
-    /// whether there is one, M4 or an S in a block that moves shows that there is.
+    /// whether there is one, M4 or an S in a block that feeds shows that there is.
     ///
     /// Source: grbl, `gcode.c`, step 4 (`GC_PARSER_LASER_DISABLE`).
     #[inline]

@@ -39,6 +39,7 @@ mod knob;
 mod knob_words;
 mod languages;
 mod level_words;
+mod loads;
 mod label;
 mod laser;
 mod lathe_cycle;

@@ -232,32 +232,14 @@ impl Control<'_> {
         }
     }
 
-    /// The end of a line with the steps from `from` on: what it switches off is off, once a move has
-    /// shown what that draws.
-    pub(super) fn settle_loads(&mut self, steps: &[Step], from: usize) {
-        if self.loads_off | self.loads_hidden == 0 {
-            return;
-        }
-        // A dwell shows them too, but not alone: `limit` may write one before a move.
-        if steps.iter().skip(from).any(Step::moves_axes) {
-            self.loads_hidden = 0;
-        }
-        let off = self.loads_off & !self.loads_hidden;
-        self.loads &= !off;
-        self.loads_off &= !off;
-    }
-
-    /// Switches loads on. Those that go off do so after the block's moves,
-    /// since controllers differ in when they do.
+    /// Switches loads on and off.
     pub(super) fn switch_loads(&mut self, value: f64) {
         for (index, load) in self.machine.loads.iter().enumerate().take(32) {
             if load.on.contains(&(b'M', value)) {
-                self.loads_hidden |= !self.loads & 1 << index;
-                self.loads |= 1 << index;
-                self.loads_off &= !(1 << index);
+                self.loads.switch_on(1 << index);
             }
             if load.off.contains(&(b'M', value)) {
-                self.loads_off |= 1 << index;
+                self.loads.switch_off(1 << index);
             }
         }
     }

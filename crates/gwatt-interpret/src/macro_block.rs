@@ -10,8 +10,8 @@ use crate::rules::Macros;
 use gwatt_syntax::source::Span;
 use gwatt_syntax::{Block, Issue, IssueKind};
 
-const UNSURE_ANGLE: &str = "whether ATAN and ASIN give angles from 0 to 360 or from -180 to 180 a parameter of the control \
-     says: inverse_angles = \"from-zero\" or \"signed\" under [language] of the machine file";
+const UNSURE_ANGLE: &str = "a parameter of the control decides whether ATAN and ASIN give angles from 0 to 360 or from -180 \
+     to 180; say inverse_angles = \"from-zero\" or \"signed\" under [language] of the machine file";
 
 /// A note with its rule.
 pub(super) type Note = (&'static str, &'static str, Span);

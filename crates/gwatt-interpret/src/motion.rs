@@ -120,7 +120,7 @@ impl Control<'_> {
             rapid_factor: self.knobs.rapid_factor,
             pace: 1.0,
             dwell_s,
-            loads: self.loads,
+            loads: self.loads.on(),
             path_mode: self.modal.path_mode,
             corner: self.modal.corner,
             stray: Stray::NONE,
@@ -238,7 +238,7 @@ impl Control<'_> {
         let machine_coordinates = run.facts.machine_coordinates;
         if let Some(unknown) = self.targets(run, machine_coordinates, &mut end) {
             if self.printer.adjusts {
-                self.scale_extrusion(run, &mut end, unknown, AxisSet::default());
+                self.scale_extrusion(run, &mut end, unknown, false);
             }
             self.go(run, kind, &end, unknown, None);
         }
@@ -350,7 +350,7 @@ impl Control<'_> {
             rapid_factor,
             pace: 1.0,
             dwell_s: 0.0,
-            loads: self.loads,
+            loads: self.loads.on(),
             path_mode: self.modal.path_mode,
             corner: self.modal.corner,
             stray,

@@ -24,12 +24,16 @@ impl Step {
         matches!(self, Self::Move(mv) if mv.moves_axes())
     }
 
-    /// Whether it only reports what limits the moves, a word of the feed, limits that may
-    /// act early or where a beam may wait: these need not stand in a limited program as they do in the original.
+    /// Whether it only reports what limits the moves, a word of the feed, limits that may act
+    /// early or where a beam may wait: these need not stand in a limited program as they do in
+    /// the original.
     #[must_use]
     pub fn is_note(&self) -> bool {
         matches!(self, Self::Action(action)
-            if matches!(action.kind, ActionKind::Feed | ActionKind::EarlyLimits(_) | ActionKind::BeamMayStop))
+        if matches!(
+            action.kind,
+            ActionKind::Feed | ActionKind::EarlyLimits(_) | ActionKind::BeamMayStop
+        ))
     }
 }
 

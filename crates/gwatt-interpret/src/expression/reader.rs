@@ -31,11 +31,7 @@ pub(crate) struct Reader<'t> {
     pub(crate) tape: Tape,
     /// What ROUND of Fanuc's macros does here.
     pub(crate) round: Function,
-    /// ROUND was used, and what it does depends on the unit in force.
-    pub(crate) rounds_by_unit: bool,
-    /// An inverse function was used whose value depends on a setting that is not known.
-    pub(crate) unsure_angle: bool,
-    /// The place of one whose value differs by it.
+    /// The place of an inverse function whose value a setting decides that is not known.
     pub(crate) unsure_angle_at: Option<usize>,
     /// Whether an unknown value is passed on instead of being an error.
     passes_on: bool,
@@ -96,8 +92,6 @@ impl<'t> Reader<'t> {
             cursor,
             tape: Tape::default(),
             round: Function::Round,
-            rounds_by_unit: false,
-            unsure_angle: false,
             unsure_angle_at: None,
             passes_on: false,
             unknown: None,
@@ -438,17 +432,16 @@ impl<V: Variables> WithVariables<'_, '_, V> {
         };
         let result = function.and_then(|function| {
             let function = self.as_set(function);
-            let by_unit = matches!(
-                function,
-                Function::RoundThousandth | Function::RoundTenThousandth
-            );
-            self.reader.rounds_by_unit |= by_unit;
+            // Steps do not follow the unit, which another run may have changed.
+            self.reader.tape.lost |=
+                function == Function::RoundThousandth || function == Function::RoundTenThousandth;
             self.reader.tape.push(Op::Of(function));
             function.apply(values)
         });
         if fanuc && matches!(function, Ok(Function::Angle | Function::Asin)) {
             let (_, is_known) = self.variables.inverse_angles();
-            self.reader.unsure_angle |= !is_known;
+            // Another run may come to an angle that is to be noted.
+            self.reader.tape.lost |= !is_known;
             let differs = matches!(result, Ok(angle) if !(0.0..=180.0).contains(&angle));
             if differs && !is_known {
                 self.reader.unsure_angle_at.get_or_insert(start);

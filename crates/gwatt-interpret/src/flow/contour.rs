@@ -36,7 +36,9 @@ impl Flow {
     ) -> Result<(), FlowError> {
         let finishes = contour.cycle == ContourCycle::Finish;
         let numbers = [contour.first, contour.last];
-        let roughed = self.roughed.filter(|it| finishes && it.0 == numbers);
+        let text = self.next.text;
+        let is_it = |it: &([u64; 2], Place)| finishes && it.0 == numbers && it.1.text == text;
+        let roughed = self.roughed.filter(is_it);
         let first = match roughed {
             Some((_, place)) => place,
             None => self.find_block(contour.first, self.next)?,

@@ -8,9 +8,6 @@ use gwatt_motion::MoveKind;
 /// Angles below it count as none.
 const NO_ANGLE_RAD: f64 = 1e-9;
 
-/// Axes that arcs of printers turn, whatever their words name.
-const XY: AxisSet = AxisSet(0b11);
-
 impl Control<'_> {
     /// An arc whose end is not on its circle: the firmwares run the circle of
     /// the start up to the angle of the end, and from there straight to the end.
@@ -31,7 +28,7 @@ impl Control<'_> {
                        with a straight line to the end";
         run.report.note_once("arc-end", message, whole);
         if self.printer.adjusts {
-            self.scale_extrusion(run, &mut end, AxisSet::default(), XY);
+            self.scale_extrusion(run, &mut end, AxisSet::default(), true);
         }
         let from = [ends.start[0] - center[0], ends.start[1] - center[1]];
         let to = [ends.end[0] - center[0], ends.end[1] - center[1]];

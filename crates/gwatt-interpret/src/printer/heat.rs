@@ -88,9 +88,7 @@ impl Control<'_> {
             match on {
                 Some(true) => {
                     self.printer.lit[load] |= bits;
-                    self.loads_hidden |= !self.loads & 1 << load;
-                    self.loads |= 1 << load;
-                    self.loads_off &= !(1 << load);
+                    self.loads.switch_on(1 << load);
                 }
                 Some(false) => self.put_out(load, bits),
                 None => {}
@@ -107,7 +105,7 @@ impl Control<'_> {
             self.printer.maybe_lit &= !(1 << load);
         }
         if self.printer.lit[load] == 0 && self.printer.maybe_lit & (1 << load) == 0 {
-            self.loads_off |= 1 << load;
+            self.loads.switch_off(1 << load);
         }
     }
 
@@ -136,9 +134,7 @@ impl Control<'_> {
         }
         let all = u32::MAX.checked_shr(32 - loads).unwrap_or_default();
         self.printer.maybe_lit |= all;
-        self.loads_hidden |= all & !self.loads;
-        self.loads |= all;
-        self.loads_off &= !all;
+        self.loads.switch_on(all);
         let name = String::from_utf8_lossy(span.of(run.report.text)).into_owned();
         let message = format!(
             "what {name} switches on only the machine knows: every [[load]] counts as on from here, \

@@ -25,7 +25,7 @@ impl Control<'_> {
         let message = "the part from M622 to M623 may be left out by the machine: what holds after \
                        it counts both ways, and its first and next moves from anywhere";
         run.report.note_once("optional-part", message, span);
-        let before = Before::new(&self.printer, &self.modal, &self.knobs, self.loads);
+        let before = Before::new(&self.printer, &self.modal, &self.knobs, self.loads.on());
         self.printer.optional.push(before);
         self.at_full_speed(run, self.machine.axis_set);
         run.act(ActionKind::MayStop, 0.0);
@@ -58,8 +58,7 @@ impl Control<'_> {
         }
         let distance = self.modal.absolute != before.absolute;
         let extruder = self.printer.extruder_absolute != before.extruder_absolute;
-        self.loads |= before.loads;
-        self.loads_off &= !before.loads;
+        self.loads.switch_on(before.loads);
         let state = &mut self.printer;
         state.unstated = state
             .unstated

@@ -119,9 +119,11 @@ impl Control<'_> {
         run: &Run<'_, '_>,
         end: &mut AxisValues,
         unknown: AxisSet,
-        turning: AxisSet,
+        is_arc: bool,
     ) {
-        let spared = self.is_spared(run, turning);
+        // Arcs are of X and Y, whatever their words name.
+        let moving = AxisSet(if is_arc { XY } else { 0 });
+        let spared = self.is_spared(run, moving);
         let flow = if spared { 1.0 } else { self.printer.flow };
         let factor = flow * self.printer.volumetric;
         if factor == 1.0 || unknown.contains(EXTRUDER) {

@@ -115,7 +115,6 @@ impl Control<'_> {
         block.issues.clear();
         let angle = reader.unsure_angle_at;
         statement.unsure_angle = angle.map(|start| Span::new(start, reader.at));
-        statement.recorder.lost |= reader.unsure_angle || reader.rounds_by_unit;
         if record {
             let untold = statement.callee.is_some()
                 || statement.corner.is_some()

@@ -12,6 +12,7 @@ use super::{X, Z};
 use crate::control::{Control, Effects, HeldBlock, Run};
 use crate::execute::Interpreter;
 use crate::jump::Transfer;
+use crate::loads::Loads;
 use crate::modal::Modal;
 use crate::position::Position;
 use crate::report::Report;
@@ -30,8 +31,7 @@ pub(crate) struct Before {
     position: Position,
     spindle: SpindleMode,
     switches: Switches,
-    loads: u32,
-    loads_off: u32,
+    loads: Loads,
 }
 
 impl Control<'_> {
@@ -158,7 +158,6 @@ impl Interpreter<'_> {
             spindle: control.spindle,
             switches: control.switches,
             loads: control.loads,
-            loads_off: control.loads_off,
         })
     }
 
@@ -185,7 +184,6 @@ impl Interpreter<'_> {
             control.spindle = before.spindle;
             control.switches = before.switches;
             control.loads = before.loads;
-            control.loads_off = before.loads_off;
         }
         let mut run = Run {
             line,

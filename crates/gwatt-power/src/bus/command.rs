@@ -138,13 +138,13 @@ impl SpindleBus<'_> {
         self.direction * (rpm * factor).min(max)
     }
 
-    /// Sets off the run that was asked for; rows of runs that do not fit, or that no move
-    /// shows.
+    /// Sets off the run that was asked for; rows of runs that do not fit, and of others where
+    /// they have to be shown, as no move does it.
     pub(super) fn set_off(
         &mut self,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
         next: Option<&Move>,
-        alone: bool,
+        shows: bool,
     ) {
         let Some(line) = self.asked.take() else {
             return;
@@ -173,8 +173,8 @@ impl SpindleBus<'_> {
             // Turned down, the run before has come further.
             demand = self.alone(next, slower.henceforth(&self.motor));
         }
-        let shows = alone && !self.states[0].is_steady();
-        if shows || !self.model.fits(&demand) {
+        let shown = shows && !self.states[0].is_steady();
+        if shown || !self.model.fits(&demand) {
             self.row(
                 (line, next),
                 demand,

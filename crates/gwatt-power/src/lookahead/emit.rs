@@ -41,6 +41,7 @@ impl Ahead {
                 observer.pass();
                 sink(&front.mv, &front.assessment, &front.text);
                 self.open.pass();
+                self.still -= 1;
                 continue;
             }
             if (first + 1 >= finished || self.waits_for_corners()) && !self.at_rest {
@@ -122,17 +123,10 @@ impl Ahead {
 }
 
 impl Ahead {
-    /// Whether other corners may be set yet for the first move that waits; lines that do not move
-    /// have no place in the control's queue.
+    /// Whether other corners may be set yet for the first move that waits.
     #[inline]
     fn waits_for_corners(&self) -> bool {
-        let held_back = self.held_back as usize;
-        if held_back == 0 {
-            return false;
-        }
-        let numbers = self.open.first()..self.open.end();
-        let moves = |number: &u64| self.open.get(*number).is_some_and(|open| open.moves);
-        numbers.filter(moves).take(held_back + 1).count() <= held_back
+        self.held_back > 0 && self.open.len() as u64 - self.still <= self.held_back
     }
 
     /// The number of the first move that is not finished in one of the plans.

@@ -35,7 +35,7 @@ use super::parabolic_blend::Ride;
 use super::robust::Extremes;
 use super::steps::Steps;
 use constant_speed::Glider;
-use gwatt_machine::{AXES, AxisId, AxisValues, CornerRule, LookAhead, Machine, PathMode};
+use gwatt_machine::{AXES, AxisValues, CornerRule, LookAhead, Machine, PathMode};
 use gwatt_motion::{EarlyLimits, Move, MoveKind};
 use gwatt_plan::Overrides;
 use gwatt_plan::lookahead::{Element, PathPlanner};
@@ -65,6 +65,9 @@ pub(super) struct Ahead {
     /// As many of the last moves are not passed on while they may move: other corners may be set
     /// for them yet.
     held_back: u64,
+    /// How many lines of those that are not passed on do not move: they have no place in the
+    /// control's queue.
+    still: u64,
     /// Nothing moves after the last move.
     at_rest: bool,
     /// Something stands after the last move that may or may not stop it.
@@ -158,6 +161,7 @@ impl Ahead {
             nominal: (!alike).then_some(nominal),
             open: Queue::new(),
             held_back,
+            still: 0,
             at_rest: true,
             in_doubt: false,
             reach2: None,
@@ -258,6 +262,7 @@ impl Ahead {
                 self.part();
             }
             self.open.push(mv, text, want).assessment = assessment;
+            self.still += 1;
             return self.pump(model, observer);
         }
         self.brake_in_doubt(model, observer);
@@ -337,9 +342,8 @@ impl Ahead {
         self.in_doubt |= !(self.at_rest || self.rests());
     }
 
-    /// New limits may hold for the last move already: they may be higher by this factor. With those
-    /// of speed it may be as fast as F asks. Of corners, which hold for all moves that wait, it is the
-    /// largest step, mm/s.
+    /// New limits may hold for moves that wait already: they may be higher by this factor; of
+    /// corners it is the largest step, mm/s.
     pub fn doubt_limits(
         &mut self,
         model: &PowerModel,
@@ -352,44 +356,24 @@ impl Ahead {
         }
         self.doubt();
         self.brake_in_doubt(model, observer);
-        let (first, step_mm_s) = if limits == EarlyLimits::Corners {
-            // What is not certain counts with any speed at its corners.
+        if limits == EarlyLimits::Corners {
+            // They hold for all moves that wait.
             self.doubt_from(self.open.first());
-            (self.open.first(), factor)
-        } else {
-            (self.largest.next.max(self.open.first()), 0.0)
-        };
+            return self.doubt_steps_from(self.open.first(), factor);
+        }
+        self.doubt_steps_from(self.largest.next.max(self.open.first()), 0.0);
+        if let Some(last) = self.open.back_mut() {
+            last.act_early(limits, factor);
+        }
+    }
+
+    /// The moves from this one on take corners with steps of speed up to this one, mm/s, or those
+    /// that they have themselves.
+    fn doubt_steps_from(&mut self, first: u64, step_mm_s: f64) {
         for number in first..self.open.end() {
             if let Some(open) = self.open.get_mut(number) {
                 open.step_mm_s = Some(open.step_mm_s.unwrap_or(0.0).max(step_mm_s));
             }
-        }
-        if limits == EarlyLimits::Corners {
-            return;
-        }
-        if let Some(last) = self.open.back_mut() {
-            let mut early = last.at_most().clone();
-            match limits {
-                EarlyLimits::Corners => {}
-                EarlyLimits::Feed => {
-                    let excess = std::mem::replace(&mut early.feed_excess, 1.0);
-                    early.feed_mm_s *= factor * excess;
-                }
-                EarlyLimits::Filament => {
-                    let extruder = AxisId::E as usize;
-                    let way_mm = early.end[extruder] - early.start[extruder];
-                    early.end[extruder] = early.start[extruder] + factor * way_mm;
-                }
-                EarlyLimits::AxisAccel => {
-                    early.accel_mm_s2 = early.accel_mm_s2.map(|limit| factor * limit);
-                }
-                EarlyLimits::PathAccel => early.path_accel_mm_s2 *= factor,
-                EarlyLimits::Speed => {
-                    early.rapid_factor = factor * early.rapid_factor.max(1.0);
-                    early.feed_mm_s *= std::mem::replace(&mut early.feed_excess, 1.0);
-                }
-            }
-            last.early = Some(Box::new(early));
         }
     }
 

@@ -5,8 +5,8 @@ use super::pace::Pace;
 use crate::assessment::Assessment;
 use crate::demand::Want;
 use crate::duty_cycle::Buffered;
-use gwatt_machine::{Machine, PathMode};
-use gwatt_motion::{Corner, Move, MoveKind};
+use gwatt_machine::{AxisId, Machine, PathMode};
+use gwatt_motion::{Corner, EarlyLimits, Move, MoveKind};
 use gwatt_plan::is_independent;
 use gwatt_plan::lookahead::Joint;
 
@@ -76,6 +76,34 @@ impl Open {
             early: None,
             step_mm_s: None,
         }
+    }
+
+    /// Limits that are higher by a factor may hold for it already. With those of speed it may be as
+    /// fast as F asks.
+    pub fn act_early(&mut self, limits: EarlyLimits, factor: f64) {
+        let mut early = self.at_most().clone();
+        let mut as_asked = |factor: f64| {
+            early.feed_mm_s *= factor * std::mem::replace(&mut early.feed_excess, 1.0);
+        };
+        match limits {
+            EarlyLimits::AxisAccel => {
+                early.accel_mm_s2 = early.accel_mm_s2.map(|limit| factor * limit);
+            }
+            EarlyLimits::PathAccel => early.path_accel_mm_s2 *= factor,
+            EarlyLimits::Speed => {
+                as_asked(1.0);
+                early.rapid_factor = factor * early.rapid_factor.max(1.0);
+            }
+            EarlyLimits::Feed => as_asked(factor),
+            EarlyLimits::Filament => {
+                let extruder = AxisId::E as usize;
+                let way_mm = early.end[extruder] - early.start[extruder];
+                early.end[extruder] = early.start[extruder] + factor * way_mm;
+            }
+            // Of its joints.
+            EarlyLimits::Corners => {}
+        }
+        self.early = Some(Box::new(early));
     }
 
     /// The move under the highest limits that may hold for it.

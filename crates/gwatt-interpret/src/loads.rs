@@ -1,0 +1,54 @@
+//! Which loads of the machine file (`[[load]]`) the words so far have on, a bit each.
+
+use gwatt_motion::Step;
+
+/// Loads that words switch on and off.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Loads {
+    on: u32,
+    /// They go off at the end of the line.
+    off: u32,
+    /// Those that were switched on after the last move: none has shown them.
+    hidden: u32,
+}
+
+impl Loads {
+    /// Those that are on, as moves have them.
+    #[inline]
+    pub(super) fn on(self) -> u32 {
+        self.on
+    }
+
+    /// Whether some are on that no move has shown.
+    #[inline]
+    pub(super) fn are_hidden(self) -> bool {
+        self.hidden != 0
+    }
+
+    /// Switches loads on.
+    pub(super) fn switch_on(&mut self, loads: u32) {
+        self.hidden |= loads & !self.on;
+        self.on |= loads;
+        self.off &= !loads;
+    }
+
+    /// Switches loads off, after the moves of the block, since controllers differ in when they do.
+    pub(super) fn switch_off(&mut self, loads: u32) {
+        self.off |= loads;
+    }
+
+    /// The end of a line with the steps from `from` on: what it switches off is off, once a move
+    /// has shown what that draws.
+    pub(super) fn end_line(&mut self, steps: &[Step], from: usize) {
+        if self.off | self.hidden == 0 {
+            return;
+        }
+        // A dwell shows them too, but not alone: `limit` may write one before a move.
+        if steps.iter().skip(from).any(Step::moves_axes) {
+            self.hidden = 0;
+        }
+        let off = self.off & !self.hidden;
+        self.on &= !off;
+        self.off &= !off;
+    }
+}
