@@ -256,14 +256,14 @@ fn what_happens_during_a_stop() {
 #[test]
 fn a_stop_that_is_written_leaves_loads_to_the_move() {
     let machine = machine_from(&format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"fanuc\"\n[converter]\npeak_power_w = 10000\n\
-         [[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 500\n{}",
+        "schema = 1\nname = \"test\"\ncontroller = \"fanuc\"\n[converter]\npeak_power_w = 400\n\
+         [[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 100\n{}",
         linear_axes("XYZ", [30000.0, 5000.0, 150.0], "")
     ));
     let program = "G21 G90 G94\nG0 X190. F100\nM8\nM9\nG0 X0 Z90.\nG0 Y5.\nM0\nM30\n";
     let input = Cursor::new(program.as_bytes());
     let (options, how) = (Options::default(), LimitOptions::default());
-    let found = limit(input, &machine, &options, how, &mut Vec::new(), None).expect("read");
+    let found = limit(input, &machine, &options, how, Vec::new(), None).expect("read");
     assert!(
         found.certified && found.edited_lines > 0,
         "{:?}",

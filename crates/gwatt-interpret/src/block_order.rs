@@ -36,6 +36,7 @@ impl Control<'_> {
 
     /// Stops and the end come after the motion.
     pub(super) fn end_of_block(&mut self, run: &mut Run<'_, '_>) {
+        self.loads.settle(run.own_steps());
         self.beam_at_empty_line(run);
         if !run.facts.boundary && run.facts.stop_word.is_none() {
             return;

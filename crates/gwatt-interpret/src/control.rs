@@ -211,6 +211,15 @@ impl Run<'_, '_> {
         }));
     }
 
+    /// The steps of its line.
+    pub(super) fn own_steps(&self) -> impl Iterator<Item = &Step> {
+        let is_own = |step: &&Step| match step {
+            Step::Move(mv) => mv.line == self.line,
+            Step::Action(action) => action.line == self.line,
+        };
+        self.steps.iter().filter(is_own)
+    }
+
     pub(super) fn whole(&self) -> Span {
         Span {
             start: 0,

@@ -232,7 +232,6 @@ impl<'m> Interpreter<'m> {
             self.control.compensate(&mut run, before, errors);
         }
         self.control.let_knobs_act(&mut run, before);
-        self.control.loads.end_line(run.steps, before);
         if run.report.diagnostics.errors != errors {
             run.steps.truncate(before);
             self.control.transfer = None;
@@ -284,6 +283,7 @@ impl Control<'_> {
             self.lathe_corner(run);
             self.motion(run);
             self.beam_at_empty_line(run);
+            self.loads.settle(run.own_steps());
             if run.report.diagnostics.errors == errors {
                 self.complain_about_rest(run);
             }

@@ -37,14 +37,15 @@ impl Loads {
         self.off |= loads;
     }
 
-    /// The end of a line with the steps from `from` on: what it switches off is off, once a move
-    /// has shown what that draws.
-    pub(super) fn end_line(&mut self, steps: &[Step], from: usize) {
+    /// The end of a command that has come to these steps, or of a line: what it switches off is off,
+    /// once a move has shown what that draws.
+    #[inline]
+    pub(super) fn settle<'s>(&mut self, steps: impl IntoIterator<Item = &'s Step>) {
         if self.off | self.hidden == 0 {
             return;
         }
         // A dwell shows them too, but not alone: `limit` may write one before a move.
-        if steps.iter().skip(from).any(Step::moves_axes) {
+        if steps.into_iter().any(Step::moves_axes) {
             self.hidden = 0;
         }
         let off = self.off & !self.hidden;

@@ -41,7 +41,7 @@ impl Control<'_> {
             let limits = early.then(|| self.knobs.clone());
             let factors = [self.printer.feed_factor, self.printer.flow];
             let next = self.one_command(run, text, index > 0);
-            self.loads.end_line(run.steps, so_far);
+            self.loads.settle(run.steps.iter().skip(so_far));
             let moves = |steps: &[Step]| steps.iter().any(|step| matches!(step, Step::Move(_)));
             // The firmware waits for the axes before it runs a file that may set limits.
             let own = run.steps.get(so_far..).unwrap_or_default();
