@@ -256,7 +256,8 @@ fn what_happens_during_a_stop() {
 #[test]
 fn a_stop_that_is_written_leaves_loads_to_the_move() {
     let machine = machine_from(&format!(
-        "schema = 1\nname = \"test\"\ncontroller = \"fanuc\"\n[converter]\npeak_power_w = 400\n\
+        "schema = 1\nname = \"test\"\ncontroller = \"fanuc\"\n[path]\nrapid = \"linear\"\n\
+         [converter]\npeak_power_w = 400\n\
          [[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 100\n{}",
         linear_axes("XYZ", [30000.0, 5000.0, 150.0], "")
     ));
