@@ -31,8 +31,8 @@ impl Found {
 pub struct Wanted {
     /// What a page shows of it.
     pub page: bool,
-    /// The energy that it takes.
-    pub energy: bool,
+    /// Exact figures of all moves, and the energy that they take.
+    pub figures: bool,
     /// What makes it fit.
     pub changes: bool,
 }
@@ -59,7 +59,7 @@ pub fn check_program(program: &Program, setup: &Setup, wanted: Wanted) -> Found 
         drawn,
     };
     let mut rows = wanted.page.then(PageRows::default);
-    let mut summed = wanted.energy.then_some(Summed);
+    let mut summed = wanted.figures.then_some(Summed);
     let mut analyze = |machine: &Machine| {
         let options = setup.options_for(program);
         let mut input = program.open()?;

@@ -18,7 +18,7 @@ use reasons::BUG;
 use std::collections::VecDeque;
 
 pub(super) use compare::DOES_NOT_FIT;
-use compare::compare;
+use compare::{compare, refuse_unfit};
 use divided::{Found, Pieces};
 pub(super) use reasons::Reasons;
 use stands::Stands;
@@ -426,7 +426,14 @@ impl<'m, 'r> Verdict<'m, 'r> {
         self.pass_to_move();
         let original = self.originals.get(self.judged).map(|original| &*original);
         if added_stop(mv, original, &self.stops) {
-            return self.tally.wait(after);
+            refuse_unfit(
+                &self.model,
+                (mv.text, mv.line),
+                after,
+                text,
+                &mut self.reasons,
+            );
+            return self.tally.wait(mv, after, text);
         }
         if let Some(Expected::Move(original)) = self.originals.get(self.judged) {
             let place = (original.text, original.line);

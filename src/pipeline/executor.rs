@@ -291,6 +291,9 @@ impl<'m, R: Read + Seek> Executor<'m, R> {
         if !idle && self.diagnostics.errors == 0 && self.interpreter.assumes_unit() {
             self.diagnostics.push(no_units());
         }
+        if self.interpreter.leaves_loads_on() && self.diagnostics.errors == 0 {
+            self.diagnostics.push(loads_at_end());
+        }
         if self.interpreter.holds() && self.diagnostics.errors == 0 {
             let (rule, message, help) = if self.interpreter.holds_corner() {
                 let message = "the program ends before the second move of a corner";
@@ -339,6 +342,13 @@ fn no_units() -> Diagnostic {
         "write G21 or G20 at the beginning, or say units = \"mm\" or \"inch\" under [language] of \
          the machine file",
     )
+}
+
+/// What a load draws that is switched on last of all has been judged nowhere.
+fn loads_at_end() -> Diagnostic {
+    let message = "what is switched on after the last move ([[load]] of the machine file) is not \
+                   counted: the program neither moves nor ends (M2, M30) after it";
+    Diagnostic::warning("loads-at-end", message).help("write M2 or M30 at the end")
 }
 
 /// The program as bytes; `None` where it is too large to be held.

@@ -151,10 +151,10 @@ impl<'m, 'r> Totals<'m, 'r> {
         self.summary.duration_s
     }
 
-    /// Adds a dwell that was put in: its time, and what the machine draws meanwhile.
-    pub(super) fn wait(&mut self, assessment: &Assessment) {
-        self.summary.duration_s += assessment.duration_s;
-        self.energy_j += assessment.demand.energy_j;
+    /// Adds a dwell that was put in, which is none of the program's moves.
+    pub(super) fn wait(&mut self, mv: &Move, assessment: &Assessment, text: &[u8]) {
+        self.add(mv, assessment, text);
+        self.summary.moves -= 1;
     }
 
     /// Adds a move to the figures, without a row and without advice.

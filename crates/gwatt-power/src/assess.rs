@@ -166,15 +166,12 @@ impl<'m> Assessor<'m> {
     /// can be judged then.
     pub fn act(&mut self, action: &Action, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         self.act_lower(action);
-        let Some(mut bus) = self.bus.take() else {
+        let Some(bus) = self.bus.take() else {
             return self.act_on_axes(action, sink);
         };
-        let want = self.want;
-        self.act_on_axes(action, &mut |mv, judged, text| {
-            bus.take(mv, judged, text, want, sink);
+        let mut bus = self.judge_with_spindle(bus, sink, |axes, mut sink| {
+            axes.act_on_axes(action, &mut sink)
         });
-        self.observer
-            .spindle_loads(&self.model, &mut bus.spindle_loads);
         bus.act(action, sink);
         self.bus = Some(bus);
     }
@@ -362,11 +359,11 @@ impl<'m> Assessor<'m> {
     /// Passes on what was waiting, at the end of the program.
     pub fn finish(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
         self.finish_lower();
-        let Some(mut bus) = self.bus.take() else {
+        let Some(bus) = self.bus.take() else {
             return self.finish_axes(sink);
         };
-        let want = self.want;
-        self.finish_axes(&mut |mv, judged, text| bus.take(mv, judged, text, want, sink));
+        let mut bus =
+            self.judge_with_spindle(bus, sink, |axes, mut sink| axes.finish_axes(&mut sink));
         bus.finish(sink);
         self.observer
             .spindle_loads(&self.model, &mut bus.spindle_loads);

@@ -23,21 +23,8 @@ pub(super) fn compare(
     reasons: &mut Reasons,
 ) {
     let place = (original.text, original.line);
-    if !model.fits(&after.demand) && !original.hopeless {
-        let demand = &after.demand;
-        let limit_w = model.limit_w(demand.converter);
-        let regen_limit_w = model.regen_limit_w(demand.converter);
-        let message = match regen_limit_w.filter(|_| demand.peak_w <= limit_w) {
-            Some(regen_limit_w) => format!(
-                "the block still feeds back {:.1} W of {regen_limit_w:.1} W",
-                demand.regen_w
-            ),
-            None => format!(
-                "the block still needs {:.1} W of {limit_w:.1} W",
-                demand.peak_w
-            ),
-        };
-        reasons.push(place, DOES_NOT_FIT, message, "", text);
+    if !original.hopeless {
+        refuse_unfit(model, place, after, text, reasons);
     }
     let asked = &original.asked;
     // What the control makes of a block that asks for the same depends on its neighbours, which
@@ -49,12 +36,12 @@ pub(super) fn compare(
     let rises = |before: f64, after: f64| after > before * (1.0 + rounding);
     let asks_more =
         asked.is_faster(mv, rounding) || !original.as_feed && asked.is_harder(mv, rounding);
-    // A slower arc, and a slower move under a curve of force, may leave more to the
-    // acceleration along the path than a faster one.
-    let slower = after.speed_mm_s < original.speed_mm_s;
+    // What is left along the path may rise where a limit falls: of arcs under limits of jerk, and of
+    // slower moves under a curve of force.
+    let may_rise = after.speed_mm_s < original.speed_mm_s || mv.arc.is_some();
     if asks_more
         || rises(original.speed_mm_s, after.speed_mm_s)
-        || !slower && rises(original.accel_mm_s2, after.accel_mm_s2)
+        || !may_rise && rises(original.accel_mm_s2, after.accel_mm_s2)
     {
         let message = "a speed or an acceleration went up".to_owned();
         reasons.push(place, "went-up", message, BUG, text);
@@ -78,6 +65,33 @@ pub(super) fn compare(
         };
         reasons.push(place, "changed-feed", message.to_owned(), help, text);
     }
+}
+
+/// (a): says of a move that it does not fit.
+pub(super) fn refuse_unfit(
+    model: &PowerModel,
+    place: (u16, u64),
+    after: &Assessment,
+    text: &[u8],
+    reasons: &mut Reasons,
+) {
+    let demand = &after.demand;
+    if model.fits(demand) {
+        return;
+    }
+    let limit_w = model.limit_w(demand.converter);
+    let regen_limit_w = model.regen_limit_w(demand.converter);
+    let message = match regen_limit_w.filter(|_| demand.peak_w <= limit_w) {
+        Some(regen_limit_w) => format!(
+            "the block still feeds back {:.1} W of {regen_limit_w:.1} W",
+            demand.regen_w
+        ),
+        None => format!(
+            "the block still needs {:.1} W of {limit_w:.1} W",
+            demand.peak_w
+        ),
+    };
+    reasons.push(place, DOES_NOT_FIT, message, "", text);
 }
 
 /// By what share the speed of a move along its path may differ from that of the original

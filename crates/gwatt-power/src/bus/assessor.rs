@@ -4,7 +4,7 @@ use super::SpindleBus;
 use crate::{Assessment, Assessor};
 use gwatt_motion::{Move, Start};
 
-impl Assessor<'_> {
+impl<'m> Assessor<'m> {
     /// The same for a program that begins from there: where the axes are not
     /// known, nothing is known of the spindle either.
     #[must_use]
@@ -38,14 +38,28 @@ impl Assessor<'_> {
             return;
         };
         bus.push();
+        let bus = self.judge_with_spindle(bus, sink, |axes, mut sink| {
+            axes.push_axes(mv, text, &mut sink)
+        });
+        self.bus = Some(bus);
+    }
+
+    /// Has the axes judge what they can, and passes it on with the spindle in it. Whatever lets
+    /// moves go: their peaks count as closely as the sum needs.
+    pub(crate) fn judge_with_spindle(
+        &mut self,
+        mut bus: Box<SpindleBus<'m>>,
+        sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
+        judge: impl FnOnce(&mut Self, &mut dyn FnMut(&Move, &Assessment, &[u8])),
+    ) -> Box<SpindleBus<'m>> {
         let want = self.want;
         self.want = bus.want(want);
-        self.push_axes(mv, text, &mut |mv, judged, text| {
+        judge(self, &mut |mv, judged, text| {
             bus.take(mv, judged, text, want, sink);
         });
         self.want = want;
         self.observer
             .spindle_loads(&self.model, &mut bus.spindle_loads);
-        self.bus = Some(bus);
+        bus
     }
 }

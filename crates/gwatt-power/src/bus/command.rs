@@ -4,6 +4,7 @@
 use super::SpindleBus;
 use super::queued::Queued;
 use crate::Assessment;
+use crate::spindle_state::SpindleState;
 use crate::spindle_trace::SpindleSpan;
 use crate::surface_speed::Surface;
 use gwatt_machine::SpindleWait;
@@ -168,13 +169,21 @@ impl SpindleBus<'_> {
         if unknown && !self.states[0].is_steady() {
             self.wait_unknown();
         }
+        let slower = self.slower.as_ref().map(|slower| &slower.state);
+        if self.states[..1]
+            .iter()
+            .chain(slower)
+            .all(SpindleState::is_steady)
+        {
+            // It does what it did: the moves next to it show that.
+            return;
+        }
         let mut demand = self.alone(next, self.states[0].henceforth(&self.motor));
         if let (true, Some(slower)) = (self.model.fits(&demand), &self.slower) {
             // Turned down, the run before has come further.
             demand = self.alone(next, slower.henceforth(&self.motor));
         }
-        let shown = shows && !self.states[0].is_steady();
-        if shown || !self.model.fits(&demand) {
+        if shows || !self.model.fits(&demand) {
             self.row(
                 (line, next),
                 demand,

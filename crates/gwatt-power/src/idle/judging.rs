@@ -29,13 +29,10 @@ impl Assessor<'_> {
     #[cold]
     #[inline(never)]
     fn run_dry(&mut self, sink: &mut impl FnMut(&Move, &Assessment, &[u8])) {
-        let Some(mut bus) = self.bus.take() else {
+        let Some(bus) = self.bus.take() else {
             return self.run_axes_dry(sink);
         };
-        let want = self.want;
-        self.run_axes_dry(&mut |mv, judged, text| bus.take(mv, judged, text, want, sink));
-        self.observer
-            .spindle_loads(&self.model, &mut bus.spindle_loads);
+        let bus = self.judge_with_spindle(bus, sink, |axes, mut sink| axes.run_axes_dry(&mut sink));
         self.bus = Some(bus);
     }
 
