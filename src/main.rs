@@ -32,10 +32,13 @@ fn main() -> ExitCode {
 fn run() -> u8 {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        // Help and version come this way too; a closed pipe is no error.
+        // Help and version come this way too.
         Err(error) => {
-            let _ = error.print();
-            return u8::try_from(error.exit_code()).unwrap_or(REFUSED);
+            let code = u8::try_from(error.exit_code()).unwrap_or(REFUSED);
+            return match error.print() {
+                Err(error) if error.kind() != io::ErrorKind::BrokenPipe => REFUSED,
+                _ => code,
+            };
         }
     };
     let terminal = Terminal::new(cli.color, cli.progress);

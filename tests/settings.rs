@@ -6,7 +6,7 @@
 
 use std::io::Cursor;
 
-use gwatt::pipeline::{LimitOptions, Options, limit};
+use gwatt::pipeline::{LimitOptions, Options, analyze, limit};
 use insta::assert_snapshot;
 
 use crate::fanuc::{moves, notes};
@@ -270,4 +270,25 @@ fn a_stop_that_is_written_leaves_loads_to_the_move() {
         "{:?}",
         found.reasons
     );
+}
+
+/// What is on when the text ends has been judged nowhere: that is said.
+#[test]
+fn a_load_at_the_end_of_the_text_is_said_not_to_count() {
+    let machine = machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"iso\"\n[converter]\npeak_power_w = 400\n\
+         [[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 1000\n{}",
+        linear_axes("XYZ", [30000.0, 5000.0, 150.0], "")
+    ));
+    let rules = |program: &str| -> Vec<&str> {
+        let input = Cursor::new(program.as_bytes());
+        let found = analyze(input, &machine, &Options::default(), None).expect("read");
+        found.notes.iter().map(|note| note.rule).collect()
+    };
+    assert_eq!(rules("G21 G90\nG0 X1\nM8\n"), ["loads-at-end"]);
+    assert!(rules("G21 G90\nG0 X1\nM8\nM30\n").is_empty());
+    assert!(rules("G21 G90\nG0 X1\nM8\nG0 X2\n").is_empty());
+    // It was on for a while all the same.
+    assert_eq!(rules("G21 G90\nG0 X1\nM8\nM9\n"), ["loads-at-end"]);
+    assert!(rules("G21 G90\nM8\nG0 X1\nM9\n").is_empty());
 }

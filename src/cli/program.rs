@@ -4,6 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use clap::builder::NonEmptyStringValueParser;
 use clap::{Args, ValueEnum};
 use gwatt::interpret::{BlockDelete, GivenVariable, ProbeResult, ProbeWay};
 use gwatt::machine::AxisId;
@@ -115,7 +116,8 @@ pub struct MachineArgs {
         long,
         value_name = "MACHINE",
         env = "GWATT_MACHINE",
-        hide_env_values = true
+        hide_env_values = true,
+        value_parser = NonEmptyStringValueParser::new()
     )]
     pub machine: Option<String>,
 }

@@ -65,11 +65,19 @@ pub fn run(args: &LimitArgs, terminal: Terminal) -> Result<Verdict> {
     refuse_all_clashes(args, program, &places)?;
     let mut setup = setup(args, terminal)?;
     dialect::settle(&mut setup, slice::from_mut(program), terminal)?;
-    // Before a diff that follows them.
-    let mut messages = terminal.direct();
+    // Before a diff that follows them, unless they may have to be left out.
+    let mut messages = if args.quiet {
+        terminal.messages()
+    } else {
+        terminal.direct()
+    };
     let _progress = program.progress(terminal.progress(args.quiet), PASSES);
-    let limited = limit_one(args, &setup, program, &places, &mut messages)?;
-    Ok(limited.verdict().unwrap_or(Verdict::Fits))
+    let limited = limit_one(args, &setup, program, &places, &mut messages);
+    let verdict = limited.as_ref().map(|it| it.verdict());
+    if args.quiet && !matches!(verdict, Ok(Some(Verdict::Fits) | None)) {
+        terminal.show(&messages);
+    }
+    Ok(limited?.verdict().unwrap_or(Verdict::Fits))
 }
 
 /// Limits several programs, each by itself, into a folder or in place.

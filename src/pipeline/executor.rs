@@ -348,7 +348,8 @@ fn no_units() -> Diagnostic {
 fn loads_at_end() -> Diagnostic {
     let message = "what is switched on after the last move ([[load]] of the machine file) is not \
                    counted: the program neither moves nor ends (M2, M30) after it";
-    Diagnostic::warning("loads-at-end", message).help("write M2 or M30 at the end")
+    Diagnostic::warning("loads-at-end", message)
+        .help("let a move follow, or the end of the program where the control knows it (M2, M30)")
 }
 
 /// The program as bytes; `None` where it is too large to be held.

@@ -102,3 +102,35 @@ fn rows_next_to_a_cycle_that_is_written_out_are_those_of_the_original() {
     assert!(cycle.len() > 2, "{cycle:?}");
     assert!(cycle.iter().all(|row| !row[11].is_empty()), "{cycle:?}");
 }
+
+/// What is asked for next to the program changes nothing of it, where the spindle and the loads
+/// leave the axes little: the last moves before the end are judged as closely as with a report.
+#[test]
+fn a_report_changes_nothing_of_the_program() {
+    let rest = "[spindle]\ninertia_kg_m2 = 0.02\nfriction_nm = 0.3\nmax_rpm = 8000\n\
+                base_rpm = 1500\naccel_time_s = 2.5\nwait = true\npeak_power_w = 300\n\
+                [[load]]\non = \"M8\"\noff = \"M9\"\npower_w = 500";
+    let axis = "coulomb_n = 500\nmass_kg = 700\nefficiency = 0.85";
+    let shop = Shop(tempfile::tempdir().unwrap());
+    shop.put(
+        "mill.toml",
+        &format!(
+            "schema = 1\nname = \"mill\"\ncontroller = \"isg\"\n[converter]\n\
+             peak_power_w = 1250\nbase_load_w = 250\n{rest}\n[limits]\nmargin = 0.05\n\
+             [axes.X]\nrapid_mm_min = 36000\naccel_mm_s2 = 3000\n{axis}\n\
+             [axes.Y]\nrapid_mm_min = 30000\naccel_mm_s2 = 5000\n{axis}\n\
+             [axes.Z]\nrapid_mm_min = 24000\naccel_mm_s2 = 3000\n{axis}\n"
+        ),
+    );
+    shop.put(
+        "a.nc",
+        "S1000 M3\nG1 X39.9 Z-1.5 F12000\nM8\nG0 X424.1 Y270.8 Z73.0\nG1 X244.2 Y126.4 F500\n\
+         G0 X-43.7 Y138.0 Z22.8\n",
+    );
+    let [plain, reported] = ["", " --json a.json"].map(|option| {
+        let (code, _, errors) = shop.run(&format!("limit a.nc --allow feed{option} -o out.nc"));
+        assert_eq!(code, 0, "{errors}");
+        shop.get("out.nc")
+    });
+    assert_eq!(plain, reported);
+}

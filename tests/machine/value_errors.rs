@@ -364,3 +364,12 @@ fn offsets_of_axes_and_systems_that_are_not_there() {
         );
     }
 }
+
+/// In all tables, not only in those of the axes.
+#[test]
+fn beyond_computing() {
+    let spindle = |line: &str| findings(&with(&format!("[spindle]\nmax_rpm = 8000\n{line}")));
+    assert_snapshot!(spindle("peak_power_w = 1e308"), @"");
+    assert_snapshot!(spindle("inertia_kg_m2 = 1e-308"), @"");
+    assert_snapshot!(spindle("jerk_time_s = -0.0"), @"");
+}

@@ -30,7 +30,7 @@ impl Control<'_> {
     /// block; the others in the unit that the block itself sets.
     pub(super) fn read_feed(&mut self, run: &mut Run<'_, '_>) {
         let mut mm_per_unit = self.modal.mm_per_unit;
-        if !self.rules.feed_in_old_unit {
+        if !self.rules.feed_in_old_unit || self.is_grbl() {
             for (code, ..) in &run.words.g {
                 if let GCode::Units { mm_per_unit: unit } = code {
                     mm_per_unit = *unit;

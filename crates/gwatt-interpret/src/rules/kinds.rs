@@ -36,7 +36,7 @@ pub(crate) struct LanguageRules {
     /// Variables that outlast a program.
     pub kept: KeptVariables,
 
-    /// F is read in the unit in force before its block.
+    /// F is read in the unit in force before its block; not by grbl, which shares these rules.
     pub feed_in_old_unit: bool,
     /// Without any F feed moves run nevertheless: what is noted then.
     pub without_feed: Option<&'static str>,

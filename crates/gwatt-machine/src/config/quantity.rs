@@ -11,8 +11,6 @@ pub(crate) struct Given {
     pub(crate) key: &'static str,
     pub(crate) value: f64,
     pub(crate) span: Range<usize>,
-    /// As it is written.
-    written: f64,
 }
 
 /// From the written number to the load side.
@@ -87,15 +85,8 @@ impl Quantities {
             self.missing(findings, what, &keys);
             return None;
         };
-        if given.value.is_finite() && given.value > 0.0 {
-            return Some(given);
-        }
         // A number that is not positive as it is written is reported already.
-        if given.written > 0.0 {
-            let message = format!("`{}` is too large or too small to compute with", given.key);
-            findings.error("machine-range", &given.span, message, None);
-        }
-        None
+        (given.value > 0.0).then_some(given)
     }
 
     /// A quantity that is 0 if it is not given.
@@ -114,10 +105,6 @@ impl Quantities {
         forms: [Form; N],
     ) -> Option<f64> {
         let given = self.one(findings, forms).ok()??;
-        if !given.value.is_finite() {
-            let message = format!("`{}` is too large to compute with", given.key);
-            findings.error("machine-range", &given.span, message, None);
-        }
         Some(given.value)
     }
 
@@ -189,7 +176,6 @@ impl Quantities {
                 key: form.key,
                 value,
                 span: number.span,
-                written: number.value,
             });
         }
         Ok(found)

@@ -182,6 +182,11 @@ impl<'a, 'f> Structure<'a, 'f> {
             self.findings.error("machine-range", span, message, None);
             return false;
         };
+        if let Some(fault) = beyond_computing(number) {
+            let message = format!("`{name}` {fault}");
+            self.findings.error("machine-range", span, message, None);
+            return false;
+        }
         if let Some(range) = out_of_range(number, schema) {
             let message = format!("`{name}` must be {range}, but is {number}");
             let help = hints::out_of_range(name, number);
@@ -260,6 +265,20 @@ impl<'a, 'f> Structure<'a, 'f> {
             .map(hints::first_line);
         self.findings
             .error("machine-missing", header, message, help);
+    }
+}
+
+/// What is wrong with a number whose products and quotients with others may leave the range of
+/// floating-point numbers. Quantities of machines are far from it, in any unit.
+fn beyond_computing(number: f64) -> Option<&'static str> {
+    const LARGEST: f64 = 1e30;
+    let size = number.abs();
+    if size > LARGEST || size > 0.0 && size < 1.0 / LARGEST {
+        Some("is too large or too small to compute with")
+    } else if size == 0.0 && number.is_sign_negative() {
+        Some("must be 0, not -0")
+    } else {
+        None
     }
 }
 
