@@ -320,3 +320,24 @@ fn nested_comments_are_refused_as_such() {
     assert_eq!(moves("fanuc", "(a) ( (text) more )\n"), said);
     assert!(moves("linuxcnc", "(text) more\n").contains("unknown-text"));
 }
+
+/// grbl converts F by the unit of its own block; `LinuxCNC` by the one in force before
+/// ("Order of execution").
+#[test]
+fn a_feed_next_to_a_unit() {
+    let speeds = |controller: &str| -> Vec<f64> {
+        let machine = crate::listing::machine(controller);
+        let mut found = Vec::new();
+        let program = "G21 G94\nG20 G1 X1 F200\nG21 G1 X0 F500\nM2\n";
+        let options = gwatt::pipeline::Options::default();
+        let input = std::io::Cursor::new(program);
+        gwatt::pipeline::moves(input, &machine, &options, &mut |mv, _| {
+            found.push((mv.feed_mm_s * 60.0).round());
+            Ok(())
+        })
+        .expect("a program");
+        found
+    };
+    assert_eq!(speeds("grbl"), [5080.0, 500.0]);
+    assert_eq!(speeds("linuxcnc"), [200.0, 12700.0]);
+}

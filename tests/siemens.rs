@@ -16,6 +16,7 @@ use insta::assert_snapshot;
 
 use crate::listing::{listing, machine, without_lines};
 use crate::random::Dice;
+use crate::runs::rows_of;
 
 fn moves(program: &str) -> String {
     listing(program, &machine("siemens"), None)
@@ -470,4 +471,22 @@ fn diam90_halves_places_and_no_increments() {
     assert_eq!(through, twin);
     let read = values("DIAM90 X50\nR1=$AA_IW[X]\nG91\nR2=$AA_IW[X]\nDIAMOF G90 X=R1+R2\n");
     assert_eq!(read, [25.0, 100.0]);
+}
+
+/// "Constraints when selecting a transformation": the frame in force is deselected, as by G500,
+/// and where the work offset is not known, the way to the next place is not either.
+#[test]
+fn a_transformation_deselects_frames() {
+    for word in ["TRAORI", "TRAFOOF"] {
+        let rows = rows_of(
+            &machine("siemens"),
+            &format!("G500 G1 X0 F1000\nTRANS X200\nX0\n{word}\nX0\nM30\n"),
+        );
+        let last = rows.last().expect("a row");
+        assert!(
+            (last.duration_s - 12.0).abs() < 0.1,
+            "{word}: {}",
+            last.duration_s
+        );
+    }
 }

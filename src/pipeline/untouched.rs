@@ -6,6 +6,7 @@ use crate::machine::{Lathe, Machine, PathMode};
 use crate::motion::{CYCLE, TURNING_CYCLE};
 
 /// Why a rapid is not written as a feed, where the program can help.
+pub(super) const FEEDS_ARE_ROUNDED: &str = "ADIS rounds corners of feeds more than ADISPOS those of rapids: as a feed it would leave its path";
 pub(super) const BEAM_IS_LIT: &str = "the laser is on: it is off in G0 and would burn along a feed";
 pub(super) const FEED_MODE: &str = "neither G94 nor G95 says what F means";
 pub(super) const PER_REVOLUTION: &str = "the feed in force is per revolution";
@@ -68,6 +69,9 @@ pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static s
         }
         BEAM_IS_LIT => {
             "write M5 before it, or S0 in it; a machine without a laser has laser_mode = false under [path]"
+        }
+        FEEDS_ARE_ROUNDED => {
+            "write ADISPOS no smaller than ADIS before it, or G64, or an exact stop (G60)"
         }
         FEED_MODE => {
             "write G94 or G95 before it; or say with which of them the machine begins: feed = \

@@ -36,7 +36,8 @@ impl Style {
             .unwrap_or_default();
         let single = block.words.len() + usize::from(block.number.is_some()) < 2;
         Self {
-            spaced: single || words.iter().any(|byte| matches!(byte, b' ' | b'\t')),
+            // After the name of a variable (X=R1) a word needs one.
+            spaced: single || words.iter().any(|byte| matches!(byte, b' ' | b'\t' | b'=')),
             lower: words.first().is_some_and(u8::is_ascii_lowercase),
         }
     }

@@ -64,13 +64,16 @@ fn too_large_to_convert() {
     line 12, error machine-range: `inertia_kg_m2` is too large or too small to compute with
       | inertia_kg_m2 = 1e300
       |                 ^^^^^
+    line 13, warning machine-unit: `lead_mm` has no effect: nothing is given at the motor
+      | lead_mm = 1e-10
+      |           ^^^^^
     ");
 }
 
 #[test]
 fn time_too_small() {
     assert_snapshot!(findings(&edited("accel_mm_s2 = 6000", "accel_time_s = 1e-320")), @r"
-    line 11, error machine-range: `accel_time_s` is too large or too small to compute with
+    line 11, error machine-range: `accel_time_s` is too small to compute with
       | accel_time_s = 1e-320
       |                ^^^^^^
     ");
@@ -368,8 +371,30 @@ fn offsets_of_axes_and_systems_that_are_not_there() {
 /// In all tables, not only in those of the axes.
 #[test]
 fn beyond_computing() {
-    let spindle = |line: &str| findings(&with(&format!("[spindle]\nmax_rpm = 8000\n{line}")));
-    assert_snapshot!(spindle("peak_power_w = 1e308"), @"");
-    assert_snapshot!(spindle("inertia_kg_m2 = 1e-308"), @"");
-    assert_snapshot!(spindle("jerk_time_s = -0.0"), @"");
+    let spindle = |line: &str| {
+        findings(&with(&format!(
+            "[spindle]\nmax_rpm = 8000\ninertia_kg_m2 = 0.1\n{line}"
+        )))
+    };
+    assert_snapshot!(spindle("peak_power_w = 1e308"), @r"
+    line 19, error machine-missing: `inertia_kg_m2` is missing in `spindle` / Inertia at the spindle in kg·m²
+      | [spindle]
+      | ^^^^^^^^^
+    line 21, error machine-range: `peak_power_w` is too large or too small to compute with
+      | peak_power_w = 1e308
+      |                ^^^^^
+    ");
+    assert_snapshot!(spindle("friction_nm = 1e-308"), @r"
+    line 21, error machine-range: `inertia_kg_m2` is too large or too small to compute with
+      | inertia_kg_m2 = 1e-308
+      |                 ^^^^^^
+    ");
+    assert_snapshot!(spindle("jerk_time_s = -0.0"), @r"
+    line 19, error machine-missing: `inertia_kg_m2` is missing in `spindle` / Inertia at the spindle in kg·m²
+      | [spindle]
+      | ^^^^^^^^^
+    line 21, error machine-range: `jerk_time_s` must be 0, not -0
+      | jerk_time_s = -0.0
+      |               ^^^^
+    ");
 }

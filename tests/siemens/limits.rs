@@ -1,10 +1,13 @@
-//! Percentages of the axes' limits: ACC, OVRRAP, VELOLIM, JERKLIM.
+//! Limits of the axes and of the path: ACC, OVRRAP, VELOLIM, JERKLIM, BRISK, ADIS.
 
 use std::io::Cursor;
 
 use gwatt::pipeline::{Summary, analyze};
 
 use crate::limit::{EXACT_STOP, RIG, Rig, assert_figures, options};
+use crate::machines::{linear_axes, machine_from};
+use crate::runs::rows_of;
+use crate::shop::Shop;
 
 /// X and Y of 500 kg, 0.5 m/s and 5 m/s²: 1250 W and, over 400 mm, 0.8 s + 0.1 s.
 const RIG_840D: Rig = Rig {
@@ -200,4 +203,55 @@ fn percentages_of_the_speed_count_where_they_are_confirmed() {
         let found = analyze(text, &machine, &options(RIG.options), None).expect("a program");
         assert_figures(&found, peak_w, duration_s, program);
     }
+}
+
+/// "Acceleration response (BRISK, SOFT, DRIVE)": the machine file's limits of jerk hold under
+/// SOFT, and before the program says anything; 500 kg, 5 m/s², 0.5 m/s make 1250 W without them.
+#[test]
+fn brisk_has_no_limit_of_jerk() {
+    let machine = machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"siemens\"\n[path]\nmode = \"exact-stop\"\n[converter]\n\
+         peak_power_w = 9000\n{}",
+        linear_axes("XYZ", [30000.0, 5000.0, 500.0], "jerk_mm_s3 = 50000")
+    ));
+    let program = "G0 X100\nBRISK\nX0\nSOFT JERKLIM[X]=100\nX100\nDRIVE\nX0\nSOFT\nX100\nM30\n";
+    let rows = rows_of(&machine, program);
+    let full: Vec<bool> = rows.iter().map(|row| row.peak_w > 1249.9).collect();
+    assert_eq!(full, [false, true, false, true, false]);
+    assert!(rows.iter().all(|row| row.peak_w < 1250.1));
+}
+
+/// "Continuous-path mode (G641 … ADIS, ADISPOS)": next to rapids the smaller distance counts, so
+/// that as feeds they would round corners that were not rounded, or less.
+#[test]
+fn rapids_stay_where_feeds_are_rounded_more() {
+    let shop = Shop::straight("siemens", 400.0);
+    let written = |head: &str| {
+        shop.put(
+            "a.mpf",
+            &format!("{head}\nG0 X400 Y300\nG1 X390 F1000\nG0 Y0\nM30\n"),
+        );
+        let (code, _, errors) = shop.run("limit a.mpf -o out.mpf");
+        (code, errors.contains("ADIS rounds corners of feeds more"))
+    };
+    assert_eq!(written("G641 ADIS=5"), (1, true));
+    assert_eq!(written("G642 ADIS=5 ADISPOS=1"), (1, true));
+    assert_eq!(written("G641 ADIS=5\nG60"), (0, false));
+    assert_eq!(written("G641 ADIS=5\nG64"), (0, false));
+    assert_eq!(written("G641 ADIS=5 ADISPOS=5"), (0, false));
+    assert_eq!(written("G641"), (0, false));
+}
+
+/// Where words stand without blanks, a word that is added after a name gets one.
+#[test]
+fn a_feed_after_a_variable_is_no_part_of_its_name() {
+    let shop = Shop::straight("siemens", 400.0);
+    shop.put("a.mpf", "R1=300\nG0X=R1\nG1X0F1000\nM30\n");
+    let (code, _, errors) = shop.run("limit a.mpf -o out.mpf");
+    assert_eq!(code, 0, "{errors}");
+    assert!(
+        shop.get("out.mpf").contains("X=R1 F"),
+        "{}",
+        shop.get("out.mpf")
+    );
 }

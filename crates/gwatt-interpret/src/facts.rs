@@ -56,6 +56,8 @@ pub struct Facts {
     pub reference: Option<u16>,
     /// It moves at rapid while a laser is lit, which is off in G0 alone.
     pub beam_is_lit: bool,
+    /// Corners of feeds are rounded where those of rapids are not.
+    pub feeds_are_rounded: bool,
     /// It homes the axes at a speed of the control's own, under the limits in force.
     pub homes: bool,
     /// The block carries a checksum.

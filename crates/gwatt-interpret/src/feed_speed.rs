@@ -40,6 +40,9 @@ impl Control<'_> {
             }
         };
         if self.feed_mode_is(FeedMode::InverseTime) {
+            if self.rules.block_time_in_seconds {
+                return Some(length_mm / feed.value);
+            }
             if run.facts.feed_word.is_none() {
                 let help = "under G93 every block needs its own F";
                 run.report

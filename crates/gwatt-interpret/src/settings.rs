@@ -38,6 +38,9 @@ impl Control<'_> {
             }
         }
         run.facts.feed_mm_per_unit = mm_per_unit;
+        if self.rules.block_time_in_seconds && self.feed_mode_is(FeedMode::InverseTime) {
+            run.facts.own_feed = Some("its feed is the time of a block (G93)");
+        }
         if run.words.take(b'F').is_none() {
             return;
         }

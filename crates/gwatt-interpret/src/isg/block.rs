@@ -1,13 +1,14 @@
 //! A block, word by word ("Structure of NC blocks", "Program structure").
 
-use super::Isg;
+use super::{Isg, is_weight};
 use crate::control::Control;
-use crate::expression::{Cursor, Grammar, Lexis, Outcome, Uses};
+use crate::expression::{Cursor, Fault, Grammar, Lexis, Outcome, Uses};
 use crate::fast_path::is_direct;
 use crate::jump::Go;
 use crate::macro_block::{Note, not_finite};
 use crate::own_state::OwnState;
 use crate::report::Report;
+use gwatt_machine::{AXES, AxisId};
 use gwatt_syntax::{Block, Word};
 
 /// A block while it is read.
@@ -48,6 +49,10 @@ impl Control<'_> {
         let transfers = self.take_reading(read, notes, block, report);
         // What stands in a comment or a declaration is no move.
         self.direct = is_direct(self.machine) && !state.comments && !state.declares;
+        if let Some(factor) = state.jerk_factor.take() {
+            self.knobs.jerk_factor = [factor; AXES];
+            self.settle();
+        }
         let system = state.systems.in_force();
         self.own = OwnState::Isg(state);
         self.place_system(system);
@@ -110,6 +115,7 @@ impl Reading<'_, '_, '_> {
             }
             block.words_end = self.cursor.end() as u32;
         }
+        self.pass_over_weights(block)?;
         self.end(go, block)
     }
 
@@ -151,6 +157,31 @@ impl Reading<'_, '_, '_> {
         None
     }
 
+    /// Axes next to a G word that weights what moves none have no places.
+    fn pass_over_weights(&self, block: &mut Block) -> Outcome<()> {
+        let is_weight = |word: &Word| word.letter == b'G' && is_weight(word.value);
+        let Some(span) = block
+            .words
+            .iter()
+            .find(|it| is_weight(it))
+            .map(|it| it.span)
+        else {
+            return Ok(());
+        };
+        let is_axis = |word: &Word| AxisId::from_letter(word.letter).is_some();
+        let others = |word: &Word| word.letter == b'G' && !is_weight(word);
+        if block.words.iter().any(is_axis) && block.words.iter().any(others) {
+            let message = "axes next to a G word that weights look-ahead or feedforward control, and \
+                           to another one: whose they are is not known";
+            let help = "write two blocks";
+            return Err(Fault::new("unsupported-word", message, help, span));
+        }
+        block
+            .words
+            .retain(|word| !is_weight(word) && !is_axis(word));
+        Ok(())
+    }
+
     /// M17, M29, M2 and M30.
     fn end(&mut self, go: Option<Go>, block: &mut Block) -> Outcome<Option<Go>> {
         let ends = |word: &Word| word.letter == b'M' && matches!(word.value, 17.0 | 29.0);
@@ -172,12 +203,7 @@ impl Reading<'_, '_, '_> {
         {
             let message = "M2 and M30 in a subprogram: the control warns, and aborts the program";
             let help = "end a subprogram by M17 or M29";
-            return Err(crate::expression::Fault::new(
-                "subprogram",
-                message,
-                help,
-                word.span,
-            ));
+            return Err(Fault::new("subprogram", message, help, word.span));
         }
         Ok(go)
     }

@@ -4,6 +4,7 @@ use super::block::Reading;
 use crate::expression::{Grammar, Outcome};
 use crate::jump::Go;
 use gwatt_syntax::Block;
+use memchr::memmem;
 
 /// What a command is.
 enum Kind {
@@ -12,6 +13,8 @@ enum Kind {
     /// It changes how speed and acceleration are built up within their limits,
     /// or lowers the limits.
     Smooths,
+    /// It chooses the profile of acceleration.
+    Slope,
     /// It limits speed and acceleration along the path.
     Limits,
     Refused(&'static str),
@@ -22,8 +25,8 @@ const COMMANDS: [(&str, Kind); 40] = [
     ("MSG", Kind::Passes),
     ("ADD", Kind::Passes),
     ("FLUSH", Kind::Smooths),
-    ("SLOPE", Kind::Smooths),
-    ("SET SLOPE", Kind::Smooths),
+    ("SLOPE", Kind::Slope),
+    ("SET SLOPE", Kind::Slope),
     ("CONTOUR MODE", Kind::Smooths),
     ("VECTOR LIMIT", Kind::Limits),
     ("LAH", Kind::Smooths),
@@ -64,7 +67,7 @@ const COMMANDS: [(&str, Kind); 40] = [
     ("PTP", Kind::Refused("a move from point to point")),
 ];
 
-const SMOOTHS: &str = "#SLOPE, #CONTOUR MODE, #HSC, #OVERRIDE and similar words change speed within \
+const SMOOTHS: &str = "#CONTOUR MODE, #HSC, #OVERRIDE and similar words change speed within \
                        the limits of the axes: taken as not there";
 
 /// "Adapt path dynamic limit values (#VECTOR LIMIT ON/OFF)", "P-CHAN-00351", "P-CHAN-00350".
@@ -142,6 +145,7 @@ impl Reading<'_, '_, '_> {
         let found = COMMANDS.iter().find(|(front, _)| fits(front));
         match found.map(|(_, kind)| kind) {
             Some(Kind::Passes) => {}
+            Some(Kind::Slope) => self.slope(),
             Some(Kind::Smooths) => self.note("smoothing", SMOOTHS, start),
             Some(Kind::Limits) => self.note("limit-not-lowered", LIMITS, start),
             Some(Kind::Refused(reason)) => {
@@ -155,6 +159,16 @@ impl Reading<'_, '_, '_> {
         // The texts of messages hold any bytes.
         self.cursor.pass_over_rest();
         Ok(())
+    }
+
+    /// `#SLOPE [TYPE=STEP]`: without a limit of jerk; so is what is not known.
+    fn slope(&mut self) {
+        let rest = self.cursor.text.get(self.cursor.at..).unwrap_or_default();
+        let rest = rest.to_ascii_uppercase();
+        let has_jerk = [&b"TRAPEZ"[..], b"SIN"]
+            .iter()
+            .any(|it| memmem::find(&rest, it).is_some());
+        self.state.jerk_factor = Some(if has_jerk { 1.0 } else { f64::INFINITY });
     }
 
     /// `#HSC ON [OPMODE=1 CONTERROR=0.1]`: polynomials at corners; with 2 splines
@@ -218,7 +232,7 @@ impl Reading<'_, '_, '_> {
     pub(super) fn comment_goes_on(&mut self) {
         let rest = self.cursor.text.get(self.cursor.at..).unwrap_or_default();
         let rest = rest.to_ascii_uppercase();
-        let end = memchr::memmem::find(&rest, b"#COMMENT END");
+        let end = memmem::find(&rest, b"#COMMENT END");
         self.state.comments = end.is_none();
         self.cursor.pass_over_rest();
     }

@@ -36,6 +36,8 @@ pub(super) struct Isg {
     arguments: Kept,
     /// Between #VAR and #ENDVAR.
     declares: bool,
+    /// What #SLOPE has just made of the limits of jerk.
+    jerk_factor: Option<f64>,
     /// Between #COMMENT BEGIN and #COMMENT END.
     comments: bool,
     /// What the line that is executed next has to do with where it is
@@ -75,7 +77,7 @@ impl Isg {
     pub(super) fn is_beyond_words(&self, block: &Block) -> bool {
         let special = |letter: u8, value: f64| match letter {
             b'L' | b'P' | b'=' | b'@' => true,
-            b'G' => value == 4.0 || is_ramp(value),
+            b'G' => value == 4.0 || is_ramp(value) || is_weight(value),
             b'M' => [2.0, 17.0, 29.0, 30.0].contains(&value),
             _ => false,
         };
@@ -105,6 +107,12 @@ impl Isg {
     fn is_called(&self) -> bool {
         self.levels.len() > 1
     }
+}
+
+/// Whether axes next to a G word have weights and switches as values: "Influence on the look-ahead
+/// functionality (G115/G116/G117)", "Feedforward control (G135/G136/G137)".
+fn is_weight(number: f64) -> bool {
+    [115.0, 116.0, 117.0, 135.0, 136.0, 137.0].contains(&number)
 }
 
 /// Whether a G word weights ramp times: see [`ramp`].

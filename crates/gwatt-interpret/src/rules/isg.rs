@@ -8,6 +8,8 @@ use crate::g_codes::common_g_code;
 pub(crate) const RULES: LanguageRules = LanguageRules {
     g_code,
     percent_names_programs: true,
+    // "Machining time or feedrate (G93/G94/G95/G194)".
+    block_time_in_seconds: true,
     macros: Macros::Own,
     kept: KeptVariables::None,
     g92_gives_offset: true,

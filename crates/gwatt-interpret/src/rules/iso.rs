@@ -22,6 +22,7 @@ pub(crate) const RULES: LanguageRules = LanguageRules {
     macros: Macros::MacroB,
     kept: KeptVariables::Numbers,
     feed_in_old_unit: false,
+    block_time_in_seconds: false,
     without_feed: None,
     lenient_dwell: false,
     places_in_parameters: false,

@@ -38,6 +38,8 @@ pub(crate) struct LanguageRules {
 
     /// F is read in the unit in force before its block; not by grbl, which shares these rules.
     pub feed_in_old_unit: bool,
+    /// F under G93 is the time of a block in s, and modal, not a share of a minute.
+    pub block_time_in_seconds: bool,
     /// Without any F feed moves run nevertheless: what is noted then.
     pub without_feed: Option<&'static str>,
     /// G4 may have no time or two.

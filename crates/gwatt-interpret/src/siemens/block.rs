@@ -92,6 +92,7 @@ impl Control<'_> {
             || state.feed_factor != 1.0
             || state.rounds.is_some()
             || state.limits.are_due()
+            || state.smoothing.rounds_feeds_more()
             || matches!(self.modal.motion, Motion::None | Motion::Special(_));
         if let Some(shift) = shift {
             self.position.set_shifts(&shift);
@@ -166,6 +167,7 @@ impl Control<'_> {
         if state.extra.turns_limit || state.limits.are_due() {
             self.settle_limits(&mut state.limits);
         }
+        run.facts.feeds_are_rounded |= state.smoothing.rounds_feeds_more();
         self.modal.path_mode = mode;
         if state.extra.blends {
             self.choose_path_mode(PathMode::LookAhead);
@@ -325,6 +327,7 @@ impl Control<'_> {
                     } else {
                         PathMode::LookAhead
                     });
+                    state.smoothing.by_distance = number > 6400;
                     run.act(ActionKind::PathMode, f64::from(number) / 10.0);
                 }
                 GCode::Siemens(Code::Suppress) => {

@@ -129,7 +129,7 @@ impl Control<'_> {
             knobs.rapid_accel_mm_s2[axis] = knobs.rapid_accel_mm_s2[axis].max(rapid[axis]);
         }
         for axis in 0..AXES {
-            knobs.jerk_factor[axis] = knobs.jerk_factor[axis].max(limits.jerk[axis] / 100.0);
+            knobs.jerk_factor[axis] = knobs.jerk_factor[axis].max(limits.jerk_factor()[axis]);
             let speed_mm_s = speed_mm_s(self.machine, axis, limits.speed[axis]);
             knobs.speed_mm_s[axis] = knobs.speed_mm_s[axis].max(speed_mm_s);
         }
@@ -150,7 +150,7 @@ impl Control<'_> {
         let knobs = &mut self.knobs;
         knobs.feed_accel_mm_s2 = feed;
         knobs.rapid_accel_mm_s2 = rapid;
-        knobs.jerk_factor = limits.jerk.map(|percent| percent / 100.0);
+        knobs.jerk_factor = limits.jerk_factor();
         knobs.speed_mm_s =
             std::array::from_fn(|axis| speed_mm_s(self.machine, axis, limits.speed[axis]));
         knobs.rapid_factor = knobs.base_rapid_factor * limits.rapid / 100.0;

@@ -10,6 +10,8 @@ pub(super) struct Limits {
     /// VELOLIM and JERKLIM, in percent.
     pub(super) speed: AxisValues,
     pub(super) jerk: AxisValues,
+    /// BRISK, DRIVE: no limit of jerk.
+    pub(super) brisk: bool,
     /// OVRRAP, in percent.
     pub(super) rapid: f64,
     /// Something lower does not act yet, since blocks before it are held back.
@@ -22,9 +24,18 @@ impl Limits {
             accel: [100.0; AXES],
             speed: [100.0; AXES],
             jerk: [100.0; AXES],
+            brisk: false,
             rapid: 100.0,
             due: false,
         }
+    }
+
+    /// The share of its own limit of jerk that each axis has; infinite without a limit.
+    pub(super) fn jerk_factor(&self) -> AxisValues {
+        if self.brisk {
+            return [f64::INFINITY; AXES];
+        }
+        self.jerk.map(|percent| percent / 100.0)
     }
 
     pub(super) fn are_due(&self) -> bool {

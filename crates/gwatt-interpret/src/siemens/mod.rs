@@ -33,6 +33,7 @@ mod radius_words;
 mod reading;
 mod saved;
 mod setting;
+mod smoothing;
 mod spindle_speeds;
 mod spindles;
 mod statement;
@@ -180,6 +181,7 @@ pub(super) struct Siemens {
     /// I, J and K of G331.
     tap_lead: [Option<f64>; 3],
     limits: limits::Limits,
+    smoothing: smoothing::Smoothing,
 }
 
 impl Siemens {
@@ -222,6 +224,7 @@ impl Siemens {
             rounds: None,
             tap_lead: [None; 3],
             limits: limits::Limits::new(),
+            smoothing: smoothing::Smoothing::default(),
         }
     }
 

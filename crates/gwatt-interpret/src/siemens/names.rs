@@ -18,9 +18,6 @@ pub(super) enum Name {
 const DATA: &[&str] = &[
     // Ramps, feed forward, compressors, dynamic sets without accelerations in the machine
     // file: its limits hold under each of them.
-    "SOFT",
-    "BRISK",
-    "DRIVE",
     "SOFTA",
     "BRISKA",
     "DRIVEA",
@@ -44,8 +41,6 @@ const DATA: &[&str] = &[
     "OTOL",
     "ATOL",
     "STOLF",
-    "ADIS",
-    "ADISPOS",
     "FNORM",
     "FIFOCTRL",
     "STARTFIFO",
@@ -119,7 +114,6 @@ const DATA: &[&str] = &[
     "DISABLE",
     "DELAYFSTON",
     "DELAYFSTOF",
-    "TRAFOOF",
     "POLFMASK",
 ];
 
@@ -171,6 +165,11 @@ const REFUSED: &[(&str, &str)] = &[
     ("CROTS", "a frame by space angles"),
     ("MEAFRAME", "a frame from measured points"),
     ("TOFFON", "a tool offset in motion"),
+    ("TOFF", "a tool offset by the program"),
+    ("TOFFL", "a tool offset by the program"),
+    ("TOFFR", "a tool offset by the program"),
+    ("TOFFLR", "a tool offset by the program"),
+    ("FD", "a feed by the handwheel"),
     ("TOFFOF", "a tool offset in motion"),
     ("TCARR", "a tool carrier that can be orientated"),
     ("OFFN", "a contour offset"),

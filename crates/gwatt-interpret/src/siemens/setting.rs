@@ -1,5 +1,6 @@
 //! Names that set something, and addresses of several letters.
 
+use super::frame::Frame;
 use super::reading::Reading;
 use super::spindle_speeds::{SPINDLES_MAX, Said};
 use crate::compensation::Insert;
@@ -71,13 +72,24 @@ impl Reading<'_, '_, '_> {
             "OVR" => self.feed_override(start)?,
             "ACC" | "OVRRAP" | "OVRA" | "VELOLIM" | "ACCLIMA" | "VELOLIMA" | "JERKLIM"
             | "JERKLIMA" => self.limit(name, start)?,
+            // "Acceleration response (BRISK, SOFT, DRIVE)": of the path. The forms with an A are for
+            // positioning axes.
+            "BRISK" | "SOFT" | "DRIVE" => {
+                self.state.limits.brisk = name != "SOFT";
+                self.extra().turns_limit = true;
+            }
+            // "Continuous-path mode (G641 …)": where a corner is rounded, of feeds and of rapids.
+            "ADIS" => self.state.smoothing.of_feeds = self.value_behind(name, start)?,
+            "ADISPOS" => self.state.smoothing.of_rapids = self.value_behind(name, start)?,
             // "Three, four and five axis transformation (TRAORI)".
             "TRAORI" => {
                 self.cursor.pass_over_parentheses()?;
+                self.deselect_frames(block, start);
                 let message = "TRAORI: the axes are taken as they are programmed; \
                                what the transformation adds to them is not counted";
                 self.note("transformation", message, start);
             }
+            "TRAFOOF" => self.deselect_frames(block, start),
             "CYCLE832" => self.high_speed_settings()?,
             "CYCLE800" => {
                 self.cursor.expect(b'(')?;
@@ -91,6 +103,14 @@ impl Reading<'_, '_, '_> {
             _ => return Ok(false),
         }
         Ok(true)
+    }
+
+    /// "Constraints when selecting a transformation": the frame in force is deselected, as by
+    /// G500.
+    fn deselect_frames(&mut self, block: &mut Block, start: usize) {
+        let at = &self.control.position.at;
+        self.state.change_frame(Frame::default(), at);
+        self.push_as(b'G', 500.0, start, block);
     }
 
     /// "SETMS": the spindle that feeds per revolution follow; without a number that of power-on.
