@@ -1,6 +1,7 @@
 //! The spindle on the same bus as the axes.
 
 mod lower;
+mod order;
 mod over_time;
 mod random;
 mod series;

@@ -26,6 +26,7 @@ pub(crate) fn take(
     if let Some(feed) = own.feed {
         dialect.per_revolution = Some(feed == FeedName::PerRevolution);
     }
+    language.spindle_words = own.spindle_words.or(language.spindle_words);
     language.tool_change = own.tool_change.or(language.tool_change);
     if let Some(axes) = &own.tool_change_moves {
         language.tool_change_moves = Some(listed_words::axes_named(findings, axes));

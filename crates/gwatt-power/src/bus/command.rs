@@ -7,7 +7,7 @@ use crate::Assessment;
 use crate::spindle_state::SpindleState;
 use crate::spindle_trace::SpindleSpan;
 use crate::surface_speed::Surface;
-use gwatt_machine::SpindleWait;
+use gwatt_machine::{MotionOrder, SpindleWait};
 use gwatt_motion::{Action, ActionKind, Move};
 
 /// Commands that wait before it is looked whether they still must.
@@ -52,16 +52,32 @@ impl SpindleBus<'_> {
         next: Option<&Move>,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
-        while let Some(queued) = self.queue.front()
+        let mut place = 0;
+        while let Some(queued) = self.queue.get(place)
             && queued.after <= self.handed
         {
             let action = queued.action;
-            self.queue.pop_front();
+            if self.acts_after(&action, next) {
+                place += 1;
+                continue;
+            }
+            self.queue.remove(place);
             if action.kind == ActionKind::Stop {
                 self.set_off(sink, next, true);
             }
             self.carry_out(&action);
         }
+    }
+
+    /// Whether a word acts after the motion of its own block, which is this.
+    fn acts_after(&self, action: &Action, next: Option<&Move>) -> bool {
+        let spindle = !matches!(
+            action.kind,
+            ActionKind::ToolLoaded | ActionKind::ToolSelect | ActionKind::ToolChange
+        );
+        spindle
+            && self.machine.controller.language.spindle_words == Some(MotionOrder::AfterMotion)
+            && is_in_its_block(action.line, next)
     }
 
     pub(super) fn carry_out(&mut self, action: &Action) {
@@ -151,12 +167,21 @@ impl SpindleBus<'_> {
             return;
         };
         self.commands = self.commands.wrapping_add(1);
+        let order = self.machine.controller.language.spindle_words;
+        let unsure = order.is_none() && is_in_its_block(line, next);
+        self.before_w = unsure.then(|| self.states[0].henceforth(&self.motor));
         self.switched_on = self.direction != 0.0;
         for side in 0..2 {
             let target = self.target(self.overrides[side].spindle);
             self.states[side].command(&self.motor, target);
             if let (0, Some(slower)) = (side, &mut self.slower) {
                 slower.command(&self.motor, target);
+            }
+        }
+        if let Some(before_w) = self.before_w {
+            self.states[0].blur_with(before_w);
+            if let Some(slower) = &mut self.slower {
+                slower.state.blur_with(before_w);
             }
         }
         let nominal = self.target(self.overrides[1].spindle);
@@ -193,6 +218,11 @@ impl SpindleBus<'_> {
             );
         }
     }
+}
+
+/// Whether the line of a word is that of the move that comes next.
+fn is_in_its_block(line: u64, next: Option<&Move>) -> bool {
+    next.is_some_and(|mv| mv.line == line && !(mv.moving.is_empty() && mv.unknown_start.is_empty()))
 }
 
 /// M40 to M45: ranges of the spindle's gear.

@@ -82,7 +82,7 @@ impl SpindleBus<'_> {
 
     /// What cutting takes during a move.
     pub(super) fn taken(&self, mv: &Move) -> Taken {
-        if self.direction == 0.0 {
+        if self.direction == 0.0 && self.before_w.is_none() {
             return Taken::default();
         }
         self.cutting.of_move(mv.kind)
@@ -132,7 +132,10 @@ impl SpindleBus<'_> {
         self.handed += 1;
         // A move that follows the surface has left the spindle where it ends.
         if !followed {
-            let time_s = self.time_of(mv, judged);
+            let mut time_s = self.time_of(mv, judged);
+            if self.before_w.is_some() {
+                time_s[0] = 0.0;
+            }
             self.states[0].pass(time_s);
             if let Some(slower) = &mut self.slower {
                 slower.pass(mv, time_s);

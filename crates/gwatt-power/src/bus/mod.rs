@@ -66,6 +66,9 @@ pub(super) struct SpindleBus<'m> {
     clamp_rpm: f64,
     center_mm: f64,
     cutting: CuttingPower,
+    /// What it did before a word of the block that moves now, if that may act after the motion:
+    /// largest and smallest power, W.
+    before_w: Option<[f64; 2]>,
     /// A new speed was asked for, here.
     asked: Option<u64>,
     /// Commands so far.
@@ -115,6 +118,7 @@ impl<'m> SpindleBus<'m> {
             clamp_rpm: spindle.max_rpm,
             center_mm: f64::NAN,
             cutting: CuttingPower::new(machine),
+            before_w: None,
             asked: None,
             commands: 0,
             spindle_loads: None,
@@ -171,6 +175,7 @@ impl<'m> SpindleBus<'m> {
             self.motor.extremes(-n, n)
         });
         let covered = followed.as_ref().map(|it| it.extremes).or(tapping);
+        let covered = self.with_before(covered);
         let cutting_w = self.cut(mv, &mut judged);
         if self.shown.is_some() {
             self.show(mv, &judged, followed.as_ref());
@@ -221,6 +226,7 @@ impl<'m> SpindleBus<'m> {
             self.count_energy(mv, &mut judged, followed.as_ref());
         }
         self.move_on(mv, &judged, followed.is_some());
+        self.before_w = None;
         if let (Some(list), Some(load)) = (&mut self.spindle_loads, load) {
             list.push(load);
         }
