@@ -1,8 +1,8 @@
 //! Words for the spindle in a block that moves: whether they act before or after its motion is the
 //! builder's choice on many controls.
 
-use super::{FULL_W, machine, run};
-use gwatt::pipeline::Options;
+use super::{FULL_W, machine};
+use crate::runs::rows_of;
 
 /// X of 1000 kg draws 1000 W at the end of its first second, and feeds back as much at the beginning
 /// of its last; the spindle's run lasts a second.
@@ -15,7 +15,7 @@ fn peaks(controller: &str, order: &str) -> Vec<[f64; 2]> {
         order => format!("[language]\nspindle_words = \"{order}\""),
     };
     let machine = machine(controller, "", "wait = false", &rest);
-    let rows = run(&machine, PROGRAM, &Options::default()).0;
+    let rows = rows_of(&machine, &format!("G90\n{PROGRAM}M2\n"));
     rows.iter().map(|row| [row.peak_w, row.regen_w]).collect()
 }
 
