@@ -34,15 +34,15 @@ pub(super) struct Speeds {
     pub(super) backward_sign: Vec<f64>,
 }
 
-/// Force and regressors of one band.
+/// Force and regressors of one band. Those of the motion are shared by all that are tried.
 #[derive(Debug, Clone)]
 pub(super) struct Band {
     /// Force, N or N·m.
     pub(super) force: Vec<f64>,
     /// Acceleration, m/s² or rad/s².
-    pub(super) acceleration: Vec<f64>,
+    pub(super) acceleration: Arc<Vec<f64>>,
     /// Absent where no speed is known.
-    pub(super) speeds: Option<Speeds>,
+    pub(super) speeds: Option<Arc<Speeds>>,
     /// What else the force is made of: a column for each unknown.
     pub(super) further: Vec<Vec<f64>>,
 }
@@ -65,17 +65,18 @@ pub(super) struct Equations {
     pub(super) bandwidth_hz: f64,
 }
 
-/// The signals before the common filter, sample by sample.
+/// The signals before the common filter, sample by sample. Equations of another force share
+/// the motion: of a long recording each signal is megabytes.
 #[derive(Debug, Clone)]
 pub(super) struct Raw {
     /// Force, N or N·m.
-    pub(super) force: Vec<f64>,
+    pub(super) force: Arc<Vec<f64>>,
     /// Acceleration, m/s² or rad/s².
-    pub(super) acceleration: Vec<f64>,
+    pub(super) acceleration: Arc<Vec<f64>>,
     /// Speed, m/s or rad/s.
-    pub(super) velocity: Option<Vec<f64>>,
+    pub(super) velocity: Option<Arc<Vec<f64>>>,
     /// Position, m or rad: as it was measured, or summed up from the speed.
-    pub(super) position: Option<Vec<f64>>,
+    pub(super) position: Option<Arc<Vec<f64>>>,
     /// Distance of samples, s.
     pub(super) period_s: f64,
     /// Whether the motion slides or turns.
@@ -150,10 +151,10 @@ fn raw(recording: &Recording, bandwidth_hz: f64) -> Outcome<Raw> {
     let motion = recording.signals.iter().find(moving);
     let cut_off = recording.get(Quantity::Force).and_then(quality::cut_off);
     Ok(Raw {
-        force,
-        acceleration,
-        velocity,
-        position,
+        force: Arc::new(force),
+        acceleration: Arc::new(acceleration),
+        velocity: velocity.map(Arc::new),
+        position: position.map(Arc::new),
         period_s: t,
         motion: motion.map_or(Kind::Linear, |signal| signal.kind),
         cut_off,
@@ -199,16 +200,16 @@ impl Raw {
                 let kept: Vec<f64> = speeds.map(keep).collect();
                 filter(&kept)
             };
-            Speeds {
+            Arc::new(Speeds {
                 forward: part(|v| v.max(0.0)),
                 backward: part(|v| v.min(0.0)),
                 forward_sign: part(|v| sign(v).max(0.0)),
                 backward_sign: part(|v| sign(v).min(0.0)),
-            }
+            })
         });
         Band {
             force: filter(&self.force),
-            acceleration: filter(&self.acceleration),
+            acceleration: Arc::new(filter(&self.acceleration)),
             speeds,
             further: Vec::new(),
         }
@@ -223,26 +224,27 @@ fn thinning(samples: usize, bandwidth_hz: f64, t: f64) -> (usize, usize) {
     (step, edge)
 }
 
-fn thin(x: Vec<f64>, step: usize, edge: usize) -> Vec<f64> {
+fn thin(x: &[f64], step: usize, edge: usize) -> Vec<f64> {
     let inner = x.len().saturating_sub(2 * edge);
-    x.into_iter().skip(edge).take(inner).step_by(step).collect()
+    let kept = x.iter().skip(edge).take(inner).step_by(step);
+    kept.copied().collect()
 }
 
 /// What the band leaves of a column.
 fn in_band(x: &[f64], bandwidth_hz: f64, t: f64) -> Vec<f64> {
     let (step, edge) = thinning(x.len(), bandwidth_hz, t);
-    thin(low_pass(x, bandwidth_hz, t), step, edge)
+    thin(&low_pass(x, bandwidth_hz, t), step, edge)
 }
 
 /// What lies between the band's end and twice as far.
 fn above_band(x: &[f64], bandwidth_hz: f64, t: f64) -> Vec<f64> {
     let (step, edge) = thinning(x.len(), bandwidth_hz, t);
-    let (wide, narrow) = (
-        low_pass(x, 2.0 * bandwidth_hz, t),
-        low_pass(x, bandwidth_hz, t),
-    );
-    let apart = wide.iter().zip(&narrow).map(|(w, n)| w - n);
-    thin(apart.collect(), step, edge)
+    let up_to = |corner_hz| thin(&low_pass(x, corner_hz, t), step, edge);
+    let mut apart = up_to(2.0 * bandwidth_hz);
+    for (wide, narrow) in apart.iter_mut().zip(up_to(bandwidth_hz)) {
+        *wide -= narrow;
+    }
+    apart
 }
 
 impl Equations {
@@ -294,7 +296,7 @@ impl Equations {
             band.force = above_band(&force, self.bandwidth_hz, t);
         }
         self.raw = Arc::new(Raw {
-            force,
+            force: Arc::new(force),
             ..Raw::clone(&self.raw)
         });
     }
@@ -302,14 +304,14 @@ impl Equations {
     /// Values of all samples that stand at the places of the equations.
     pub(super) fn thinned(&self, column: &[f64]) -> Vec<f64> {
         let (step, edge) = thinning(column.len(), self.bandwidth_hz, self.raw.period_s);
-        thin(column.to_vec(), step, edge)
+        thin(column, step, edge)
     }
 
     fn within(raw: Raw, bandwidth_hz: f64) -> Self {
         let t = raw.period_s;
         let (step, _) = thinning(raw.force.len(), bandwidth_hz, t);
         let inside = raw.filtered(|x| in_band(x, bandwidth_hz, t));
-        let fastest = fastest(raw.velocity.as_deref().unwrap_or_default());
+        let fastest = fastest(raw.velocity.as_deref().map_or(&[][..], |v| v));
         // An axis that stands is held by friction of any size: no equation.
         let counts = match &inside.speeds {
             Some(speeds) => {
@@ -372,8 +374,8 @@ impl Equations {
         Self {
             above: Some(band.clone()),
             raw: Arc::new(Raw {
-                force: band.force.clone(),
-                acceleration: band.acceleration.clone(),
+                force: Arc::new(band.force.clone()),
+                acceleration: Arc::clone(&band.acceleration),
                 velocity: None,
                 position: None,
                 period_s: 0.01,

@@ -103,16 +103,14 @@ pub fn second_derivative(x: &[f64], period_s: f64) -> Vec<f64> {
 }
 
 fn stencil(x: &[f64], weights: [f64; 5], scale: f64) -> Vec<f64> {
-    let inner: Vec<f64> = x
-        .windows(5)
-        .map(|w| w.iter().zip(weights).map(|(x, k)| x * k).sum::<f64>() / scale)
-        .collect();
-    let (Some(first), Some(last)) = (inner.first().copied(), inner.last().copied()) else {
+    let sum = |w: &[f64]| w.iter().zip(weights).map(|(x, k)| x * k).sum::<f64>() / scale;
+    let (Some(first), Some(last)) = (x.first_chunk::<5>(), x.last_chunk::<5>()) else {
         return vec![0.0; x.len()];
     };
-    let mut out = vec![first; 2];
-    out.extend(inner);
-    out.extend([last; 2]);
+    let mut out = Vec::with_capacity(x.len());
+    out.extend([sum(first); 2]);
+    out.extend(x.windows(5).map(sum));
+    out.extend([sum(last); 2]);
     out
 }
 

@@ -343,22 +343,28 @@ fn by_data(all: &[Equations]) -> Option<Solved> {
 /// Sum of squares of what is left of each of eight parts when it is predicted by the others.
 /// The parts consist of so many stretches each, in turn.
 pub(super) fn predicted(all: &[Equations], terms: Terms, stretches: usize) -> Option<f64> {
-    let mut rows: Vec<(Vec<f64>, f64)> = Vec::new();
+    let width = width_of(all, terms);
+    // One row after the other: a list of each would be many times as large.
+    let (mut rows, mut forces) = (Vec::new(), Vec::new());
     for equations in all {
-        terms.each(equations, |row, force| rows.push((row.to_vec(), force)));
+        terms.each(equations, |row, force| {
+            rows.extend_from_slice(row);
+            forces.push(force);
+        });
     }
-    let length = rows.len().div_ceil(PARTS * stretches).max(1);
+    let rows = || rows.chunks_exact(width).zip(&forces).enumerate();
+    let length = forces.len().div_ceil(PARTS * stretches).max(1);
     let mut sum = 0.0;
     for part in 0..PARTS {
         let is_in = |k: usize| k / length % PARTS == part;
-        let mut normal = Normal::new(width_of(all, terms));
-        for (k, (row, force)) in rows.iter().enumerate() {
+        let mut normal = Normal::new(width);
+        for (k, (row, force)) in rows() {
             if !is_in(k) {
                 normal.add(row, *force);
             }
         }
         let solution = normal.solve()?;
-        for (_, (row, force)) in rows.iter().enumerate().filter(|(k, _)| is_in(*k)) {
+        for (_, (row, force)) in rows().filter(|(k, _)| is_in(*k)) {
             let left = force - product(row, solution.x.as_slice());
             sum += left * left;
         }
@@ -368,6 +374,8 @@ pub(super) fn predicted(all: &[Equations], terms: Terms, stretches: usize) -> Op
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::super::equations::Speeds;
     use super::*;
 
@@ -382,14 +390,14 @@ mod tests {
         });
         let band = Band {
             force: force.collect(),
-            acceleration,
+            acceleration: Arc::new(acceleration),
             further: Vec::new(),
-            speeds: Some(Speeds {
+            speeds: Some(Arc::new(Speeds {
                 forward: part(|v| v.max(0.0)),
                 backward: part(|v| v.min(0.0)),
                 forward_sign: part(|v| if v > 0.0 { 1.0 } else { 0.0 }),
                 backward_sign: part(|v| if v < 0.0 { -1.0 } else { 0.0 }),
-            }),
+            })),
         };
         Equations::of_band(band)
     }

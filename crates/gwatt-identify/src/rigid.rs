@@ -309,7 +309,7 @@ pub fn trace(rigid: &Rigid, recording: &Recording) -> Outcome<Trace> {
     let mass = theta.first().copied().unwrap_or_default();
     let samples = band.force.iter().zip(&without_friction);
     let modelled = samples
-        .zip(&band.acceleration)
+        .zip(band.acceleration.iter())
         .map(|((force, inertial), accel)| force - inertial + mass * accel);
     Ok(Trace {
         step_s: equations.step_s,

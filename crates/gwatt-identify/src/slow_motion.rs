@@ -89,24 +89,28 @@ pub(super) fn slow_motion(recording: &Recording) -> Option<(SlowMotion, Speed)> 
     let t = recording.period_s;
     let force = &recording.get(Quantity::Force)?.values;
     let measured = recording.get(Quantity::Acceleration).map(|it| &it.values);
-    let mut all = speeds(recording);
     // That of a held force: as a mean from sample to sample, as the friction is.
     let acceleration = match measured {
         Some(measured) => between(measured, mean_speed),
-        None => differences(&all.last()?.plain, t),
+        None => differences(&speeds(recording).next_back()?.plain, t),
     };
     let is_summed = are_sums(recording);
+    let mut follows = None;
     if let Some(measured) = measured.filter(|_| is_summed) {
         let compared = COMPARED.min(force.len()).min(measured.len());
         let head = |x: &'_ [f64]| x.get(..compared).unwrap_or_default().to_vec();
         let slow = Slow::of(&head(force), &head(&acceleration), t);
-        let plain = all.iter().map(|speed| Speed::alone(head(&speed.plain)));
+        let plain = speeds(recording).map(|speed| Speed::alone(head(&speed.plain)));
         let sums: Vec<Speed> = plain.collect();
         let by = friction_of_the_followed(&slow, &head(measured), &head(force), &sums);
-        all.extend(by.map(|by| Speed::alone(followed(measured, force, by, t))));
+        follows = by.map(|by| (measured, by));
     }
     let slow = Slow::of(force, &acceleration, t);
-    let found = all.into_iter().filter_map(|speed| {
+    drop(acceleration);
+    let follows = follows.into_iter();
+    let follows = follows.map(|(measured, by)| Speed::alone(followed(measured, force, by, t)));
+    // One after the other, of which the best so far is kept.
+    let found = speeds(recording).chain(follows).filter_map(|speed| {
         let found = slow.solved(&speed, is_summed)?;
         Some((found, speed))
     });

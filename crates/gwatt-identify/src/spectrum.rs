@@ -355,6 +355,13 @@ fn averaged(x: &[f64], half: usize) -> Vec<f64> {
         .collect()
 }
 
+/// The least power of two, or three times one, that is no less.
+fn smooth_length(least: usize) -> usize {
+    let power = least.next_power_of_two();
+    let less = 3 * (power / 4);
+    if less >= least { less } else { power }
+}
+
 /// After how many samples a signal repeats itself, if it does.
 #[must_use]
 pub fn repetition(x: &[f64]) -> Option<usize> {
@@ -366,9 +373,16 @@ pub fn repetition(x: &[f64]) -> Option<usize> {
         return None;
     }
     let mean = x.iter().sum::<f64>() / n as f64;
-    let length = (2 * n).next_power_of_two();
-    let fft = plan(length);
-    let mut data: Vec<f64> = x.iter().map(|x| x - mean).collect();
+    let most = x.iter().fold(0.0_f64, |most, x| most.max((x - mean).abs()));
+    if most == 0.0 {
+        return None;
+    }
+    // Up to lags of a half nothing comes round the end of as much again. What single
+    // precision may be wrong by, the last comparison puts right.
+    let length = smooth_length(n + n / 2 + 1);
+    let fft = RealFftPlanner::<f32>::new().plan_fft_forward(length);
+    let mut data = Vec::with_capacity(length);
+    data.extend(x.iter().map(|x| ((x - mean) / most) as f32));
     data.resize(length, 0.0);
     let mut spectrum = fft.make_output_vec();
     fft.process(&mut data, &mut spectrum).ok()?;
@@ -390,7 +404,7 @@ pub fn repetition(x: &[f64]) -> Option<usize> {
         let overlap = (n - lag) as f64 / n as f64;
         spectrum
             .get(*lag)
-            .is_some_and(|c| c.re / power > 0.99 * overlap - 1e-3)
+            .is_some_and(|c| f64::from(c.re / power) > 0.99 * overlap - 1e-3)
     });
     // Of neighbouring lags the best is the period; the list is short.
     for lag in close.take(64) {
@@ -410,6 +424,14 @@ pub fn repetition(x: &[f64]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lengths_for_transforms() {
+        assert_eq!(
+            [12, 13, 16, 17, 24, 25].map(smooth_length),
+            [12, 16, 16, 24, 24, 32]
+        );
+    }
 
     #[test]
     fn means_at_the_ends_are_of_as_many() {

@@ -81,46 +81,44 @@ pub(super) fn are_sums(recording: &Recording) -> bool {
     !has(Quantity::Velocity) && !has(Quantity::Position)
 }
 
-/// Speeds that may be it. Of an acceleration there are two: as it is summed up from rest,
-/// and so that the axis ends as it began, which takes off what a sensor adds.
-pub(super) fn speeds(recording: &Recording) -> Vec<Speed> {
+/// Speeds that may be it, each made as it is asked for. Of an acceleration there are two: as it
+/// is summed up from rest, and so that the axis ends as it began, which takes off what a sensor
+/// adds.
+pub(super) fn speeds(recording: &Recording) -> Box<dyn DoubleEndedIterator<Item = Speed> + '_> {
     let t = recording.period_s;
     let values = |quantity| recording.get(quantity).map(|signal| &signal.values);
     if let Some(velocity) = values(Quantity::Velocity) {
         let plain = Arc::new(velocity.clone());
-        let smoothed = SMOOTH.map(|share| Arc::new(low_pass(velocity, share / t, t)));
-        let smoothed = std::iter::once(Arc::clone(&plain)).chain(smoothed);
-        return smoothed
-            .map(|smooth| Speed {
-                smooth,
-                plain: Arc::clone(&plain),
-                means: None,
-            })
-            .collect();
+        let shares = [None].into_iter().chain(SMOOTH.map(Some));
+        return Box::new(shares.map(move |share| Speed {
+            smooth: match share {
+                Some(share) => Arc::new(low_pass(velocity, share / t, t)),
+                None => Arc::clone(&plain),
+            },
+            plain: Arc::clone(&plain),
+            means: None,
+        }));
     }
     if let Some(position) = values(Quantity::Position) {
-        let smoothed = SMOOTH_POSITION.map(|share| low_pass(position, share / t, t));
         // How far it went is the mean, of fast swings too, which a derivative makes smaller.
         let means = Arc::new(as_held(&between(position, |a, b| (b - a) / t)));
-        let speeds = smoothed.map(|position| Speed {
+        return Box::new(SMOOTH_POSITION.into_iter().map(move |share| Speed {
             means: Some(Arc::clone(&means)),
-            ..Speed::alone(derivative(&position, t))
-        });
-        return speeds.into();
+            ..Speed::alone(derivative(&low_pass(position, share / t, t), t))
+        }));
     }
     let Some(acceleration) = values(Quantity::Acceleration) else {
-        return Vec::new();
+        return Box::new(std::iter::empty());
     };
     let mean = acceleration.iter().sum::<f64>() / acceleration.len().max(1) as f64;
-    [0.0, mean]
-        .map(|bias| Speed::alone(summed(acceleration, bias, t)))
-        .into()
+    let biases = [0.0, mean].into_iter();
+    Box::new(biases.map(move |bias| Speed::alone(summed(acceleration, bias, t))))
 }
 
 /// The speed of a recording of which mass and friction are known.
 pub(super) fn speed_of(recording: &Recording, by: Followed) -> Option<Speed> {
     if !are_sums(recording) {
-        return speeds(recording).into_iter().next();
+        return speeds(recording).next();
     }
     let values = |quantity| recording.get(quantity).map(|signal| &signal.values);
     let force = values(Quantity::Force)?;

@@ -78,7 +78,7 @@ impl Play {
         let t = raw.period_s;
         let mut load_speed = velocity.first().copied().unwrap_or_default();
         let mut at = At::End(if load_speed < 0.0 { -1.0 } else { 1.0 });
-        for (v, a) in velocity.iter().zip(&raw.acceleration) {
+        for (v, a) in velocity.iter().zip(raw.acceleration.iter()) {
             let mut step = Step {
                 before: load_speed,
                 after: *v,
@@ -119,6 +119,8 @@ impl Play {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::super::super::column::Kind;
     use super::*;
 
@@ -128,9 +130,9 @@ mod tests {
     fn a_load_coasts_until_it_is_caught() {
         let velocity = [1.0, 1.0, 0.0, -1.0, -1.0, -1.0];
         let raw = Raw {
-            force: vec![0.0; 6],
-            acceleration: vec![0.0, 0.0, -10.0, -10.0, 0.0, 0.0],
-            velocity: Some(velocity.to_vec()),
+            force: Arc::new(vec![0.0; 6]),
+            acceleration: Arc::new(vec![0.0, 0.0, -10.0, -10.0, 0.0, 0.0]),
+            velocity: Some(Arc::new(velocity.to_vec())),
             position: None,
             period_s: 0.1,
             motion: Kind::Linear,

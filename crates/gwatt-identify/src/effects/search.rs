@@ -1,6 +1,7 @@
 //! One effect after another, as long as each predicts the recordings clearly better.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use super::super::equations::Equations;
 use super::super::figure::Figure;
@@ -74,7 +75,7 @@ fn largest(all: &[Equations], of: impl Fn(&Equations) -> f64) -> f64 {
 }
 
 fn range(equations: &Equations) -> f64 {
-    let position = equations.raw.position.iter().flatten();
+    let position = equations.raw.position.iter().flat_map(|x| x.iter());
     let (low, high) = position.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
         (low.min(*x), high.max(*x))
     });
@@ -82,7 +83,7 @@ fn range(equations: &Equations) -> f64 {
 }
 
 fn fastest(equations: &Equations) -> f64 {
-    let speed = equations.raw.velocity.iter().flatten();
+    let speed = equations.raw.velocity.iter().flat_map(|x| x.iter());
     speed.fold(0.0, |most: f64, v| most.max(v.abs()))
 }
 
@@ -98,8 +99,8 @@ fn passed_in_band(equations: &Equations) -> f64 {
 fn left(all: &[Equations], solved: &Solved) -> Vec<Left> {
     let each = all.iter().zip(&solved.residuals);
     each.map(|(equations, residual)| {
-        let counted = |column: &Option<Vec<f64>>| -> Vec<f64> {
-            let thin = equations.thinned(column.as_deref().unwrap_or_default());
+        let counted = |column: &Option<Arc<Vec<f64>>>| -> Vec<f64> {
+            let thin = equations.thinned(column.as_deref().map_or(&[][..], |x| x));
             let both = thin.into_iter().zip(&equations.counts);
             both.filter(|(_, counts)| **counts)
                 .map(|(x, _)| x)
