@@ -4,7 +4,7 @@ use super::assumptions::assumptions;
 use super::{Certificate, Options, Start, Summary};
 use crate::diagnostic::Diagnostic;
 use crate::interpret::BlockDelete;
-use crate::machine::{CornerRule, KnobTarget, Machine, PathMode, Spindle, SpindleWait};
+use crate::machine::{CornerRule, Family, KnobTarget, Machine, PathMode, Spindle, SpindleWait};
 
 /// How the spindle counts.
 fn spindle_condition(spindle: &Spindle) -> &'static str {
@@ -162,6 +162,15 @@ fn output_conditions(machine: &Machine) -> impl Iterator<Item = String> {
     })
 }
 
+/// The ISG kernel keeps its weightings from one program to the next ("Weighting of the maximum
+/// acceleration").
+fn weights_condition(machine: &Machine) -> Option<&'static str> {
+    (machine.controller.language.family == Family::Isg).then_some(
+        "weightings of speed and acceleration (G129 to G131, G230, G231) are 100 % where a program \
+         begins",
+    )
+}
+
 /// Which levels hold when a program begins.
 fn level_conditions(machine: &Machine) -> impl Iterator<Item = String> {
     let knobs = machine.controller.knobs.iter();
@@ -266,6 +275,7 @@ pub(super) fn conditions(machine: &Machine, paths: &[Options], summary: &Summary
     ));
     conditions.extend(assumptions(machine));
     conditions.extend(output_conditions(machine));
+    conditions.extend(weights_condition(machine).map(str::to_owned));
     conditions.extend(level_conditions(machine));
     conditions.push(format!("read as {}", machine.controller.language.name));
     conditions.push(match options.reading.start {
