@@ -2,7 +2,7 @@
 
 use super::line_key::IN_A_FILE;
 use crate::interpret::{Facts, MOVES_OF_ITSELF, RUNS_A_FILE, SETS_UNKNOWN, TOOL_CHANGE_UNKNOWN};
-use crate::machine::{Lathe, Machine, PathMode};
+use crate::machine::{Language, Lathe, Machine, PathMode};
 use crate::motion::{CYCLE, TURNING_CYCLE};
 
 /// Why a rapid is not written as a feed, where the program can help.
@@ -27,7 +27,6 @@ pub(super) const UNDER_COMPENSATION: &str =
 /// What helps where something may not be changed for this reason.
 pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static str {
     let language = &machine.controller.language;
-    let further = facts.reference.is_some_and(|point| point > 1);
     match reason {
         CYCLE => {
             "--allow expand writes canned cycles out as single blocks; where it taps, more \
@@ -36,25 +35,7 @@ pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static s
         TURNING_CYCLE if facts.cycle => {
             "--allow expand writes turning cycles out as single blocks, where they cut no thread"
         }
-        REFERENCE if further => {
-            if language.family.facts().reference_in_parameters {
-                "the way is gone by a feed before it where the point is known: give the \
-                 control's --parameters, or G30 under [offsets] in the machine file"
-            } else {
-                "the way is gone by a feed before it where the places are known: \
-                 further_reference_mm of the axes, the work offset ([offsets] or --parameters) \
-                 and the tool's length (--tool-table)"
-            }
-        }
-        REFERENCE if language.family.facts().reference_in_parameters => {
-            "the way is gone by a feed before it where the places are known: give the control's \
-             --parameters, or G28 and the work offset under [offsets] in the machine file"
-        }
-        REFERENCE | MACHINE_COORDINATES => {
-            "the way is gone by a feed before it where the places are known: reference_mm of \
-             the axes, the work offset ([offsets] or --parameters) and the tool's length \
-             (--tool-table); or give the speed of the return, reference_mm_min"
-        }
+        REFERENCE | MACHINE_COORDINATES => return_help(language, facts, reason),
         IN_A_FILE => {
             "--with-subprograms writes the files of subprograms too, certified together with \
              all programs that are given"
@@ -108,5 +89,31 @@ pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static s
              move as a feed by hand"
         }
         _ => "",
+    }
+}
+
+/// The same for the way to a reference point, or to a place in machine coordinates.
+fn return_help(language: &Language, facts: &Facts, reason: &str) -> &'static str {
+    let in_parameters = language.family.facts().reference_in_parameters;
+    let further = facts.reference.is_some_and(|point| point > 1);
+    match (reason, in_parameters) {
+        (REFERENCE, true) if further => {
+            "the way is gone by a feed before it where the point is known: give the control's \
+             --parameters, or G30 under [offsets] in the machine file"
+        }
+        (REFERENCE, false) if further => {
+            "the way is gone by a feed before it where the places are known: \
+             further_reference_mm of the axes, the work offset ([offsets] or --parameters) and \
+             the tool's length (--tool-table)"
+        }
+        (REFERENCE, true) => {
+            "the way is gone by a feed before it where the places are known: give the control's \
+             --parameters, or G28 and the work offset under [offsets] in the machine file"
+        }
+        _ => {
+            "the way is gone by a feed before it where the places are known: reference_mm of \
+             the axes, the work offset ([offsets] or --parameters) and the tool's length \
+             (--tool-table); or give the speed of the return, reference_mm_min"
+        }
     }
 }

@@ -170,7 +170,7 @@ impl<'m> Assessor<'m> {
             return self.act_on_axes(action, sink);
         };
         let mut bus = self.judge_with_spindle(bus, sink, |axes, mut sink| {
-            axes.act_on_axes(action, &mut sink)
+            axes.act_on_axes(action, &mut sink);
         });
         bus.act(action, sink);
         self.bus = Some(bus);
@@ -362,8 +362,9 @@ impl<'m> Assessor<'m> {
         let Some(bus) = self.bus.take() else {
             return self.finish_axes(sink);
         };
-        let mut bus =
-            self.judge_with_spindle(bus, sink, |axes, mut sink| axes.finish_axes(&mut sink));
+        let mut bus = self.judge_with_spindle(bus, sink, |axes, mut sink| {
+            axes.finish_axes(&mut sink);
+        });
         bus.finish(sink);
         self.observer
             .spindle_loads(&self.model, &mut bus.spindle_loads);

@@ -115,7 +115,7 @@ impl Reading<'_, '_, '_> {
             }
             block.words_end = self.cursor.end() as u32;
         }
-        self.pass_over_weights(block)?;
+        pass_over_weights(block)?;
         self.end(go, block)
     }
 
@@ -157,31 +157,6 @@ impl Reading<'_, '_, '_> {
         None
     }
 
-    /// Axes next to a G word that weights what moves none have no places.
-    fn pass_over_weights(&self, block: &mut Block) -> Outcome<()> {
-        let is_weight = |word: &Word| word.letter == b'G' && is_weight(word.value);
-        let Some(span) = block
-            .words
-            .iter()
-            .find(|it| is_weight(it))
-            .map(|it| it.span)
-        else {
-            return Ok(());
-        };
-        let is_axis = |word: &Word| AxisId::from_letter(word.letter).is_some();
-        let others = |word: &Word| word.letter == b'G' && !is_weight(word);
-        if block.words.iter().any(is_axis) && block.words.iter().any(others) {
-            let message = "axes next to a G word that weights look-ahead or feedforward control, and \
-                           to another one: whose they are is not known";
-            let help = "write two blocks";
-            return Err(Fault::new("unsupported-word", message, help, span));
-        }
-        block
-            .words
-            .retain(|word| !is_weight(word) && !is_axis(word));
-        Ok(())
-    }
-
     /// M17, M29, M2 and M30.
     fn end(&mut self, go: Option<Go>, block: &mut Block) -> Outcome<Option<Go>> {
         let ends = |word: &Word| word.letter == b'M' && matches!(word.value, 17.0 | 29.0);
@@ -212,6 +187,31 @@ impl Reading<'_, '_, '_> {
         let span = self.cursor.span(start);
         self.notes.push((rule, message, span));
     }
+}
+
+/// Axes next to a G word that weights what moves none have no places.
+fn pass_over_weights(block: &mut Block) -> Outcome<()> {
+    let is_weight = |word: &Word| word.letter == b'G' && is_weight(word.value);
+    let Some(span) = block
+        .words
+        .iter()
+        .find(|it| is_weight(it))
+        .map(|it| it.span)
+    else {
+        return Ok(());
+    };
+    let is_axis = |word: &Word| AxisId::from_letter(word.letter).is_some();
+    let others = |word: &Word| word.letter == b'G' && !is_weight(word);
+    if block.words.iter().any(is_axis) && block.words.iter().any(others) {
+        let message = "axes next to a G word that weights look-ahead or feedforward control, and \
+                       to another one: whose they are is not known";
+        let help = "write two blocks";
+        return Err(Fault::new("unsupported-word", message, help, span));
+    }
+    block
+        .words
+        .retain(|word| !is_weight(word) && !is_axis(word));
+    Ok(())
 }
 
 /// Whether a `%` line begins a local subprogram.

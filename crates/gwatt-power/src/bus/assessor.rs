@@ -39,7 +39,7 @@ impl<'m> Assessor<'m> {
         };
         bus.push();
         let bus = self.judge_with_spindle(bus, sink, |axes, mut sink| {
-            axes.push_axes(mv, text, &mut sink)
+            axes.push_axes(mv, text, &mut sink);
         });
         self.bus = Some(bus);
     }

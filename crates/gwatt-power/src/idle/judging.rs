@@ -32,7 +32,9 @@ impl Assessor<'_> {
         let Some(bus) = self.bus.take() else {
             return self.run_axes_dry(sink);
         };
-        let bus = self.judge_with_spindle(bus, sink, |axes, mut sink| axes.run_axes_dry(&mut sink));
+        let bus = self.judge_with_spindle(bus, sink, |axes, mut sink| {
+            axes.run_axes_dry(&mut sink);
+        });
         self.bus = Some(bus);
     }
 
