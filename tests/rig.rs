@@ -115,7 +115,7 @@ fn controller() -> Controller {
             power_on_mode: PathMode::ExactStop,
             exact_stop_word: None,
             tool_change: None,
-            spindle_words: None,
+            spindle_before_motion: false,
             tool_change_moves: None,
             unknown_moves: Vec::new(),
             rapid_uses_feed: false,

@@ -287,6 +287,8 @@ fn a_load_at_the_end_of_the_text_is_said_not_to_count() {
     };
     assert_eq!(rules("G21 G90\nG0 X1\nM8\n"), ["loads-at-end"]);
     assert!(rules("G21 G90\nG0 X1\nM8\nM30\n").is_empty());
+    assert!(rules("G21 G90\nG0 X1\nM8\nG4 P1\n").is_empty());
+    assert!(rules("G21 G90\nG0 X1\nM8\nM0\n").is_empty());
     assert!(rules("G21 G90\nG0 X1\nM8\nG0 X2\n").is_empty());
     // It was on for a while all the same.
     assert_eq!(rules("G21 G90\nG0 X1\nM8\nM9\n"), ["loads-at-end"]);

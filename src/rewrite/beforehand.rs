@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use super::number::{decimal, rounded, with_blanks};
 use crate::edit::{Edit, apply};
 use crate::interpret::{Modal, Motion, Move, MoveKind, Step, TOOL_CHANGE_UNKNOWN};
-use crate::machine::{ALL_AXES, AxisId, AxisSet, AxisValues, MotionOrder};
+use crate::machine::{ALL_AXES, AxisId, AxisSet, AxisValues, ToolChange};
 use crate::source::split_line_end;
 use crate::syntax::{Block, Word};
 
@@ -46,7 +46,7 @@ pub struct Return<'a> {
     /// U, V and W are increments of X, Y and Z (lathes).
     pub increments: bool,
     /// When the tool changes where M6 stands in it; `None`: not known.
-    pub tool_change: Option<MotionOrder>,
+    pub tool_change: Option<ToolChange>,
 }
 
 fn is_tool_change(word: &Word) -> bool {
@@ -159,7 +159,7 @@ impl Return<'_> {
     fn switching(&self) -> impl Iterator<Item = &Word> {
         let words = self.block.words.iter();
         let stops = |word: &Word| word.letter == b'M' && STOPS.contains(&word.value);
-        let tool_last = self.changes_tool() && self.tool_change == Some(MotionOrder::AfterMotion);
+        let tool_last = self.changes_tool() && self.tool_change == Some(ToolChange::AfterMotion);
         let of_itself = self.moves_of_itself();
         let stays = move |word: &Word| {
             let changes = is_tool_change(word);

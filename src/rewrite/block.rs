@@ -19,7 +19,7 @@ use super::state::{Mark, Written, motion_word};
 use super::turned::{InForce, Turned};
 use crate::edit::{Edit, apply};
 use crate::interpret::{KnobState, Motion, ToolWords};
-use crate::machine::{Machine, MotionOrder};
+use crate::machine::{Machine, ToolChange};
 use crate::source::split_line_end;
 use crate::syntax::Word;
 
@@ -209,7 +209,7 @@ impl<'m> Rewriter<'m> {
             .into_iter()
             .flatten();
         self.edits.extend(gone.map(|gone| Edit::replace(gone, "")));
-        if words.order == MotionOrder::AfterMotion {
+        if words.order == ToolChange::AfterMotion {
             return Some(words);
         }
         self.insert_line(&tool_line(&words, view.text), out);

@@ -56,6 +56,7 @@ impl Control<'_> {
             if self.loads.are_hidden() {
                 // However long it lasts, what is on draws meanwhile.
                 self.dwell(run, 0.0);
+                self.loads.see();
             }
             run.act(kind, f64::from(number) / 10.0);
         }

@@ -120,7 +120,7 @@ impl<'m> Interpreter<'m> {
     /// Whether loads are on at the end of the text that no move and no stop has shown.
     #[must_use]
     pub fn leaves_loads_on(&self) -> bool {
-        self.control.loads.are_hidden() && !self.control.ended
+        self.control.loads.are_unseen() && !self.control.ended
     }
 
     /// True once the program has ended (M2, M30, closing `%`).

@@ -1,6 +1,6 @@
 //! What a block is, besides what it does.
 
-use gwatt_machine::MotionOrder;
+use gwatt_machine::ToolChange;
 use gwatt_syntax::Word;
 use gwatt_syntax::source::Span;
 
@@ -12,7 +12,7 @@ pub struct ToolWords {
     /// M6.
     pub change: Span,
     /// Whether the tool changes before the block's motion or after it.
-    pub order: MotionOrder,
+    pub order: ToolChange,
 }
 
 impl ToolWords {

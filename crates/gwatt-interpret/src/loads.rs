@@ -10,6 +10,8 @@ pub(super) struct Loads {
     off: u32,
     /// Those that were switched on after the last move: none has shown them.
     hidden: u32,
+    /// Those that no dwell has shown either.
+    unseen: u32,
 }
 
 impl Loads {
@@ -25,9 +27,20 @@ impl Loads {
         self.hidden != 0
     }
 
+    /// Whether not even a dwell has shown some that were switched on.
+    pub(super) fn are_unseen(self) -> bool {
+        self.unseen != 0
+    }
+
+    /// A dwell shows all that are on.
+    pub(super) fn see(&mut self) {
+        self.unseen = 0;
+    }
+
     /// Switches loads on.
     pub(super) fn switch_on(&mut self, loads: u32) {
         self.hidden |= loads & !self.on;
+        self.unseen |= loads & !self.on;
         self.on |= loads;
         self.off &= !loads;
     }
@@ -44,9 +57,14 @@ impl Loads {
         if self.off | self.hidden == 0 {
             return;
         }
-        // A dwell shows them too, but not alone: `limit` may write one before a move.
-        if steps.into_iter().any(Step::moves_axes) {
-            self.hidden = 0;
+        for step in steps {
+            if matches!(step, Step::Move(_)) {
+                self.unseen = 0;
+            }
+            // A dwell shows them too, but not alone: `limit` may write one before a move.
+            if step.moves_axes() {
+                self.hidden = 0;
+            }
         }
         let off = self.off & !self.hidden;
         self.on &= !off;

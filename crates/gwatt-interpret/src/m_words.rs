@@ -2,7 +2,7 @@
 
 use super::control::{Control, Run};
 use super::facts::{TOOL_CHANGE_UNKNOWN, ToolWords};
-use gwatt_machine::MotionOrder;
+use gwatt_machine::ToolChange;
 use gwatt_motion::{ActionKind, Step};
 use gwatt_syntax::Word;
 use gwatt_syntax::source::Span;
@@ -201,7 +201,7 @@ impl Control<'_> {
             }
             _ => {}
         }
-        if order != Some(MotionOrder::AfterMotion) {
+        if order != Some(ToolChange::AfterMotion) {
             self.tool_change_moves(span, run);
             run.act(ActionKind::ToolChange, 6.0);
         }
@@ -214,7 +214,7 @@ impl Control<'_> {
 
     /// Whether the block changes the tool once the axes stand.
     fn changes_tool_at_end(&self, run: &Run<'_, '_>) -> bool {
-        self.machine.controller.language.tool_change == Some(MotionOrder::AfterMotion)
+        self.machine.controller.language.tool_change == Some(ToolChange::AfterMotion)
             && run.words.m.iter().any(|(number, _)| *number == 60)
     }
 
@@ -251,10 +251,10 @@ fn is_in_motion(step: &Step) -> bool {
 
 /// Whether M6 may stand on a line of its own before or after the motion of its block, with T.
 /// RS274/NGC has S before it ("Order of Execution").
-fn changes_nothing_else(order: MotionOrder, run: &Run<'_, '_>) -> bool {
+fn changes_nothing_else(order: ToolChange, run: &Run<'_, '_>) -> bool {
     let mut others = run.words.m.iter().filter(|(number, _)| *number != 60);
     let once = run.words.m.len() == others.clone().count() + 1;
-    let plain = |number: u16| order == MotionOrder::BeforeMotion && matches!(number, 30..=90);
+    let plain = |number: u16| order == ToolChange::BeforeMotion && matches!(number, 30..=90);
     once && others.all(|(number, _)| plain(*number))
         && !run.block.words.iter().any(|word| word.letter == b'S')
 }

@@ -76,10 +76,10 @@ pub struct Language {
     pub exact_stop_word: Option<u16>,
     /// When the tool changes where M6 stands in a block that moves; `None`: not known, the
     /// builder of the machine decides.
-    pub tool_change: Option<MotionOrder>,
-    /// When words for the spindle (M3, M4, M5, S) act that stand in a block that moves; `None`: not
+    pub tool_change: Option<ToolChange>,
+    /// Words for the spindle (M3, M4, M5, S) act before the motion of their block; else that is not
     /// known, the builder of the machine decides.
-    pub spindle_words: Option<MotionOrder>,
+    pub spindle_before_motion: bool,
     /// The axes that M6 sends to their reference points by itself; `None`: not known, taken as
     /// none.
     pub tool_change_moves: Option<AxisSet>,
@@ -156,7 +156,7 @@ pub enum PowerOnMotion {
 /// When the tool changes where M6 stands in a block that moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum MotionOrder {
+pub enum ToolChange {
     /// Before the axes move.
     BeforeMotion,
     /// Once the axes stand where the block ends.

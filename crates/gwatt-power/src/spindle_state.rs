@@ -212,15 +212,6 @@ impl SpindleState {
         }
     }
 
-    /// The same, where it may still do what it did before the command: `before` is the largest and
-    /// the smallest power of that, W.
-    pub fn blur_with(&mut self, before: [f64; 2]) {
-        self.blur();
-        if let Course::Somewhere { extremes, .. } = &mut self.course {
-            *extremes = [extremes[0].max(before[0]), extremes[1].min(before[1])];
-        }
-    }
-
     /// It may stop of itself, or turn on: until the next command nothing more
     /// is known.
     pub fn lose(&mut self, motor: &SpindleMotor) {

@@ -89,6 +89,8 @@ struct Extra {
     fixed_point: Option<f64>,
     /// CYCLE832: a path mode that blends.
     blends: bool,
+    /// TRAORI, TRAFOOF: the work offset is deselected, unless the block selects one.
+    deselects: bool,
     /// DYNNORM and similar words: a group of levels, and which one of it; `None`: any of them.
     level: Option<(usize, Option<usize>)>,
     cycle: Option<cycle_call::Call>,

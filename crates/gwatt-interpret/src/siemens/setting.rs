@@ -84,12 +84,12 @@ impl Reading<'_, '_, '_> {
             // "Three, four and five axis transformation (TRAORI)".
             "TRAORI" => {
                 self.cursor.pass_over_parentheses()?;
-                self.deselect_frames(block, start);
+                self.deselect_frames();
                 let message = "TRAORI: the axes are taken as they are programmed; \
                                what the transformation adds to them is not counted";
                 self.note("transformation", message, start);
             }
-            "TRAFOOF" => self.deselect_frames(block, start),
+            "TRAFOOF" => self.deselect_frames(),
             "CYCLE832" => self.high_speed_settings()?,
             "CYCLE800" => {
                 self.cursor.expect(b'(')?;
@@ -107,10 +107,10 @@ impl Reading<'_, '_, '_> {
 
     /// "Constraints when selecting a transformation": the frame in force is deselected, as by
     /// G500.
-    fn deselect_frames(&mut self, block: &mut Block, start: usize) {
+    fn deselect_frames(&mut self) {
         let at = &self.control.position.at;
         self.state.change_frame(Frame::default(), at);
-        self.push_as(b'G', 500.0, start, block);
+        self.extra().deselects = true;
     }
 
     /// "SETMS": the spindle that feeds per revolution follow; without a number that of power-on.

@@ -39,6 +39,10 @@ impl Reading<'_, '_, '_> {
             block.words_end = self.cursor.end() as u32;
         }
         block.issues.clear();
+        let selects = |word: &Word| word.letter == b'G' && is_work_offset(word.value);
+        if self.state.extra.deselects && !block.words.iter().any(selects) {
+            self.push_as(b'G', 500.0, 0, block);
+        }
         Ok(go)
     }
 
@@ -428,4 +432,9 @@ impl Reading<'_, '_, '_> {
         let help = "write it in quotes";
         Err(self.cursor.fault("syntax", message, help, start))
     }
+}
+
+/// G54 to G57, G500 to G599.
+fn is_work_offset(number: f64) -> bool {
+    (54.0..=57.0).contains(&number) || (500.0..=599.0).contains(&number)
 }

@@ -8,7 +8,7 @@ use super::printer_table::PrinterTable;
 use super::value::{At, NotNegative, Positive};
 use crate::controller::{
     ArcRule, ArcWithoutCenter, CompensationCorner, CompensationLead, InverseAngles, Lathe,
-    MotionOrder, PathMode, Point, PowerOnMotion, RapidJoint, RapidPath, SpindleWait, TapFeed,
+    PathMode, Point, PowerOnMotion, RapidJoint, RapidPath, SpindleWait, TapFeed, ToolChange,
     TypeTwo,
 };
 use crate::family::Family;
@@ -149,10 +149,10 @@ pub(crate) struct LanguageTable {
     /// What F means at power-on; default per minute.
     pub(crate) feed: Option<FeedName>,
     /// When the tool changes where M6 stands in a block that moves; default: not known.
-    pub(crate) tool_change: Option<MotionOrder>,
-    /// When words for the spindle (M3, M4, M5, S) act that stand in a block that moves; default:
-    /// not known, so that both count.
-    pub(crate) spindle_words: Option<MotionOrder>,
+    pub(crate) tool_change: Option<ToolChange>,
+    /// Whether words for the spindle (M3, M4, M5, S) act before the motion of their block; default
+    /// false: not known, so that both orders count.
+    pub(crate) spindle_before_motion: Option<bool>,
     /// The axes that M6 sends to their reference points by itself; default: not known.
     pub(crate) tool_change_moves: Option<Vec<At<String>>>,
     /// G12 and G13 mill circular pockets, as on a Haas; default false.

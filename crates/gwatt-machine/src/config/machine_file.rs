@@ -21,8 +21,8 @@ use super::value::{
     RapidPercent, ResponseTime, Share,
 };
 use crate::controller::{
-    ArcWithoutCenter, InverseAngles, MotionOrder, PathMode, Point, PowerOnMotion, RapidPath,
-    TapFeed, TypeTwo,
+    ArcWithoutCenter, InverseAngles, PathMode, Point, PowerOnMotion, RapidPath, TapFeed,
+    ToolChange, TypeTwo,
 };
 
 /// A machine whose drives share a power converter.
@@ -208,10 +208,10 @@ pub(crate) struct OwnLanguageTable {
     pub(crate) power_on_feed_mm_min: Option<Positive>,
     /// Whether the tool changes before or after the motion of a block that has M6 in it, which
     /// the builder of the machine decides on many controls.
-    pub(crate) tool_change: Option<MotionOrder>,
-    /// Whether words for the spindle (M3, M4, M5, S) act before or after the motion of a block that
-    /// has them in it; default: both count.
-    pub(crate) spindle_words: Option<MotionOrder>,
+    pub(crate) tool_change: Option<ToolChange>,
+    /// Whether words for the spindle (M3, M4, M5, S) act before the motion of their block, which the
+    /// builder of the machine decides on many controls; otherwise both orders count.
+    pub(crate) spindle_before_motion: Option<bool>,
     /// The axes that M6 sends to their reference points by itself, such as \["Z"\]; \[\] where it
     /// moves none.
     pub(crate) tool_change_moves: Option<Vec<At<String>>>,

@@ -26,7 +26,9 @@ pub(crate) fn take(
     if let Some(feed) = own.feed {
         dialect.per_revolution = Some(feed == FeedName::PerRevolution);
     }
-    language.spindle_words = own.spindle_words.or(language.spindle_words);
+    if let Some(first) = own.spindle_before_motion {
+        language.spindle_before_motion = first;
+    }
     language.tool_change = own.tool_change.or(language.tool_change);
     if let Some(axes) = &own.tool_change_moves {
         language.tool_change_moves = Some(listed_words::axes_named(findings, axes));

@@ -81,7 +81,7 @@ fn language(findings: &mut Findings<'_>, table: &LanguageTable) -> Option<Langua
             .map_or(0.0, |tolerance| tolerance.value),
         exact_stop_word: exact_stop_word(findings, table),
         tool_change: table.tool_change,
-        spindle_words: table.spindle_words,
+        spindle_before_motion: table.spindle_before_motion.unwrap_or(false),
         tool_change_moves: table
             .tool_change_moves
             .as_deref()

@@ -275,8 +275,6 @@ fn beyond_computing(number: f64) -> Option<&'static str> {
     let size = number.abs();
     if size > LARGEST || size > 0.0 && size < 1.0 / LARGEST {
         Some("is too large or too small to compute with")
-    } else if size == 0.0 && number.is_sign_negative() {
-        Some("must be 0, not -0")
     } else {
         None
     }

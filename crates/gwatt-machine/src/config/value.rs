@@ -71,7 +71,8 @@ impl<'de, B> Deserialize<'de> for Num<B> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let At { value, span } = At::<f64>::deserialize(deserializer)?;
         Ok(Self {
-            value,
+            // Not -0, the reciprocal of which is negative.
+            value: value + 0.0,
             span,
             bounds: PhantomData,
         })

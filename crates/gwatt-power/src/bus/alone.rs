@@ -96,15 +96,6 @@ impl SpindleBus<'_> {
         sink(&place, &assessment, NO_TEXT);
     }
 
-    /// Extremes of the spindle during a move with those from before a word that may act after it.
-    pub(super) fn with_before(&self, covered: Option<[f64; 2]>) -> Option<[f64; 2]> {
-        let Some(before) = self.before_w else {
-            return covered;
-        };
-        let own = covered.unwrap_or_else(|| self.states[0].henceforth(&self.motor));
-        Some([own[0].max(before[0]), own[1].min(before[1])])
-    }
-
     /// Whether a move waits until the spindle has its speed.
     pub(super) fn waits(&self, mv: &Move) -> bool {
         let target = self.states[0].target();
@@ -155,9 +146,12 @@ impl SpindleBus<'_> {
         if self.shown.is_some() {
             self.show_wait(mv, duration_s);
         }
-        self.states.iter_mut().for_each(SpindleState::settle);
-        if let Some(slower) = &mut self.slower {
-            slower.state.settle();
+        self.states[1].settle();
+        if self.unsure.is_none() {
+            self.states[0].settle();
+            if let Some(slower) = &mut self.slower {
+                slower.state.settle();
+            }
         }
         if duration_s > 0.0 {
             let demand = self.alone(Some(mv), extremes);

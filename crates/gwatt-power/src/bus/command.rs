@@ -7,7 +7,7 @@ use crate::Assessment;
 use crate::spindle_state::SpindleState;
 use crate::spindle_trace::SpindleSpan;
 use crate::surface_speed::Surface;
-use gwatt_machine::{MotionOrder, SpindleWait};
+use gwatt_machine::SpindleWait;
 use gwatt_motion::{Action, ActionKind, Move};
 
 /// Commands that wait before it is looked whether they still must.
@@ -52,16 +52,25 @@ impl SpindleBus<'_> {
         next: Option<&Move>,
         sink: &mut impl FnMut(&Move, &Assessment, &[u8]),
     ) {
-        let mut place = 0;
-        while let Some(queued) = self.queue.get(place)
+        if let Some(line) = self.unsure
+            && next.is_none_or(|mv| mv.line != line)
+        {
+            (self.unsure, self.before_w) = (None, None);
+            self.switched_on = self.direction != 0.0;
+        }
+        while let Some(queued) = self.queue.front()
             && queued.after <= self.handed
         {
             let action = queued.action;
-            if self.acts_after(&action, next) {
-                place += 1;
-                continue;
+            self.queue.pop_front();
+            if self.may_act_after(&action, next) {
+                if self.asked.is_some_and(|line| line != action.line) {
+                    // It was asked for before this block: it comes first.
+                    self.set_off(sink, next, false);
+                }
+                self.keep_before();
+                self.unsure = Some(action.line);
             }
-            self.queue.remove(place);
             if action.kind == ActionKind::Stop {
                 self.set_off(sink, next, true);
             }
@@ -69,15 +78,40 @@ impl SpindleBus<'_> {
         }
     }
 
-    /// Whether a word acts after the motion of its own block, which is this.
-    fn acts_after(&self, action: &Action, next: Option<&Move>) -> bool {
-        let spindle = !matches!(
+    /// Whether a word may act after the motion that comes next, which is that of its block.
+    fn may_act_after(&self, action: &Action, next: Option<&Move>) -> bool {
+        let turns = !matches!(
             action.kind,
-            ActionKind::ToolLoaded | ActionKind::ToolSelect | ActionKind::ToolChange
+            ActionKind::ToolLoaded | ActionKind::ToolSelect | ActionKind::SpindleCenter
         );
-        spindle
-            && self.machine.controller.language.spindle_words == Some(MotionOrder::AfterMotion)
-            && is_in_its_block(action.line, next)
+        // Lines of other texts have the same numbers: what is taken for one counts higher.
+        turns
+            && !self.machine.controller.language.spindle_before_motion
+            && next.is_some_and(|mv| mv.line == action.line)
+    }
+
+    /// Keeps what the spindle does before a word that may act after the motion.
+    fn keep_before(&mut self) {
+        let [own, lower] = self.may_draw();
+        let before = self.before_w.unwrap_or([own, lower]);
+        self.before_w = Some([widest(before[0], own), widest(before[1], lower)]);
+    }
+
+    /// Largest and smallest power from now on at the largest overrides, and at lower ones, W.
+    fn may_draw(&self) -> [[f64; 2]; 2] {
+        let own = self.states[0].henceforth(&self.motor);
+        let lower = self.slower.as_ref().map(|it| it.henceforth(&self.motor));
+        [own, widest(own, lower.unwrap_or(own))]
+    }
+
+    /// Extremes of a move at the largest overrides, and at lower ones, where a word of its block may
+    /// act after it: with what the spindle did before the word, and all that it may do after it.
+    pub(super) fn either_order(&self, covered: Option<[f64; 2]>) -> Option<[[f64; 2]; 2]> {
+        let before = self.before_w?;
+        let after = self.may_draw();
+        let [own, lower] = [0, 1].map(|i| widest(before[i], after[i]));
+        let covered = covered.unwrap_or(own);
+        Some([widest(own, covered), widest(lower, covered)])
     }
 
     pub(super) fn carry_out(&mut self, action: &Action) {
@@ -167,21 +201,29 @@ impl SpindleBus<'_> {
             return;
         };
         self.commands = self.commands.wrapping_add(1);
-        let order = self.machine.controller.language.spindle_words;
-        let unsure = order.is_none() && is_in_its_block(line, next);
-        self.before_w = unsure.then(|| self.states[0].henceforth(&self.motor));
-        self.switched_on = self.direction != 0.0;
+        let unsure = self.unsure == Some(line);
+        let was_on = self.switched_on;
+        self.switched_on = self.direction != 0.0 && (was_on || !unsure);
         for side in 0..2 {
             let target = self.target(self.overrides[side].spindle);
+            if unsure && side == 0 {
+                // From any speed that it may have had meanwhile.
+                if self.states[0].is_steady() {
+                    self.states[0].command(&self.motor, target);
+                    self.states[0].blur();
+                } else {
+                    let range = self.states[0].range();
+                    self.states[0].wander(&self.motor, range, target);
+                }
+                if let Some(slower) = &mut self.slower {
+                    let range = slower.state.range();
+                    slower.wander(&self.motor, range, target, false);
+                }
+                continue;
+            }
             self.states[side].command(&self.motor, target);
             if let (0, Some(slower)) = (side, &mut self.slower) {
                 slower.command(&self.motor, target);
-            }
-        }
-        if let Some(before_w) = self.before_w {
-            self.states[0].blur_with(before_w);
-            if let Some(slower) = &mut self.slower {
-                slower.state.blur_with(before_w);
             }
         }
         let nominal = self.target(self.overrides[1].spindle);
@@ -220,9 +262,9 @@ impl SpindleBus<'_> {
     }
 }
 
-/// Whether the line of a word is that of the move that comes next.
-fn is_in_its_block(line: u64, next: Option<&Move>) -> bool {
-    next.is_some_and(|mv| mv.line == line && !(mv.moving.is_empty() && mv.unknown_start.is_empty()))
+/// The larger of two largest powers, the smaller of two smallest.
+fn widest(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].max(b[0]), a[1].min(b[1])]
 }
 
 /// M40 to M45: ranges of the spindle's gear.

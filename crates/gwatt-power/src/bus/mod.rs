@@ -66,9 +66,11 @@ pub(super) struct SpindleBus<'m> {
     clamp_rpm: f64,
     center_mm: f64,
     cutting: CuttingPower,
-    /// What it did before a word of the block that moves now, if that may act after the motion:
-    /// largest and smallest power, W.
-    before_w: Option<[f64; 2]>,
+    /// The line of a word that may act before or after the motion of its block, as long as that
+    /// moves; and what the spindle may draw before the word: largest and smallest power at the
+    /// largest overrides and at lower ones, W.
+    unsure: Option<u64>,
+    before_w: Option<[[f64; 2]; 2]>,
     /// A new speed was asked for, here.
     asked: Option<u64>,
     /// Commands so far.
@@ -118,6 +120,7 @@ impl<'m> SpindleBus<'m> {
             clamp_rpm: spindle.max_rpm,
             center_mm: f64::NAN,
             cutting: CuttingPower::new(machine),
+            unsure: None,
             before_w: None,
             asked: None,
             commands: 0,
@@ -175,7 +178,8 @@ impl<'m> SpindleBus<'m> {
             self.motor.extremes(-n, n)
         });
         let covered = followed.as_ref().map(|it| it.extremes).or(tapping);
-        let covered = self.with_before(covered);
+        let either = self.either_order(covered);
+        let covered = either.map(|[own, _]| own).or(covered);
         let cutting_w = self.cut(mv, &mut judged);
         if self.shown.is_some() {
             self.show(mv, &judged, followed.as_ref());
@@ -216,6 +220,7 @@ impl<'m> SpindleBus<'m> {
             (None, _) => self.count_slower(mv, assessment, own.as_ref(), cutting_w, &mut judged),
             (Some(extremes), followed) if self.slower.is_some() => {
                 let lower = followed.as_ref().and_then(|it| it.lower);
+                let lower = either.map(|[_, lower]| lower).or(lower);
                 let lower = lower.unwrap_or(extremes);
                 self.count_following(assessment, lower, cutting_w, &mut judged);
             }
@@ -226,7 +231,6 @@ impl<'m> SpindleBus<'m> {
             self.count_energy(mv, &mut judged, followed.as_ref());
         }
         self.move_on(mv, &judged, followed.is_some());
-        self.before_w = None;
         if let (Some(list), Some(load)) = (&mut self.spindle_loads, load) {
             list.push(load);
         }
