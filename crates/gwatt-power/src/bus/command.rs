@@ -22,6 +22,7 @@ impl SpindleBus<'_> {
             | ActionKind::SurfaceSpeed
             | ActionKind::SpindleClamp
             | ActionKind::SpindleCenter
+            | ActionKind::TapSpeed
             | ActionKind::ToolLoaded
             | ActionKind::ToolSelect
             | ActionKind::ToolChange
@@ -73,7 +74,10 @@ impl SpindleBus<'_> {
     fn acts_after(&self, action: &Action, next: Option<&Move>) -> bool {
         let spindle = !matches!(
             action.kind,
-            ActionKind::ToolLoaded | ActionKind::ToolSelect | ActionKind::ToolChange
+            ActionKind::ToolLoaded
+                | ActionKind::ToolSelect
+                | ActionKind::ToolChange
+                | ActionKind::TapSpeed
         );
         spindle
             && self.machine.controller.language.spindle_words == Some(MotionOrder::AfterMotion)
@@ -100,6 +104,8 @@ impl SpindleBus<'_> {
                     sign: 1.0,
                 });
             }
+            ActionKind::TapSpeed if value == 0.0 => return self.tapped(),
+            ActionKind::TapSpeed => self.tap_rpm = Some(value),
             ActionKind::ToolLoaded => {
                 self.cutting.load(value);
                 return;
@@ -136,7 +142,32 @@ impl SpindleBus<'_> {
             _ if value == 4.0 || value == 14.0 => self.direction = -1.0,
             _ => self.direction = 0.0,
         }
+        self.lost &= matches!(
+            action.kind,
+            ActionKind::SpindleRpm | ActionKind::SurfaceSpeed
+        );
         self.asked = Some(action.line);
+    }
+
+    /// A tap is over, and its axis stands, and the spindle with it. Where that turned before, it
+    /// may turn on by itself or wait for a word.
+    fn tapped(&mut self) {
+        self.tap_rpm = None;
+        self.asked = None;
+        self.lost = self.direction != 0.0;
+        let slower = self.slower.as_mut().map(|slower| &mut slower.state);
+        for (side, state) in self.states.iter_mut().chain(slower).enumerate() {
+            let factor = self.overrides[usize::from(side == 1)].spindle;
+            let rpm = self.rpm.unwrap_or(self.spindle.max_rpm) * factor;
+            state.follow(self.direction * rpm.min(self.spindle.max_rpm));
+            state.lose(&self.motor);
+        }
+        let nominal = self.target(self.overrides[1].spindle);
+        if let Some(shown) = &mut self.shown {
+            shown.state.follow(0.0);
+            shown.state.command(&self.motor, nominal);
+        }
+        self.switched_on = self.direction != 0.0;
     }
 
     /// Something takes a time that is not known.
@@ -150,6 +181,10 @@ impl SpindleBus<'_> {
     /// The speed that is asked for now, 1/min, at an override.
     pub(super) fn target(&self, factor: f64) -> f64 {
         let max = self.spindle.max_rpm;
+        if let Some(rpm) = self.tap_rpm {
+            // An override below 100 % may not act on it.
+            return (rpm * factor.max(1.0)).clamp(-max, max);
+        }
         // Without S what was in force before the program.
         let rpm = self.rpm.unwrap_or(max);
         self.direction * (rpm * factor).min(max)
@@ -168,14 +203,22 @@ impl SpindleBus<'_> {
         };
         self.commands = self.commands.wrapping_add(1);
         let order = self.machine.controller.language.spindle_words;
-        let unsure = order.is_none() && is_in_its_block(line, next);
+        let in_step = self.tap_rpm.is_some();
+        let unsure = order.is_none() && !in_step && is_in_its_block(line, next);
         self.before_w = unsure.then(|| self.states[0].henceforth(&self.motor));
-        self.switched_on = self.direction != 0.0;
+        self.switched_on = self.direction != 0.0 || self.tap_rpm.is_some();
         for side in 0..2 {
             let target = self.target(self.overrides[side].spindle);
             self.states[side].command(&self.motor, target);
             if let (0, Some(slower)) = (side, &mut self.slower) {
                 slower.command(&self.motor, target);
+                if self.lost {
+                    slower.state.lose(&self.motor);
+                }
+            }
+            if self.lost {
+                // A speed alone does not say whether it turns.
+                self.states[side].lose(&self.motor);
             }
         }
         if let Some(before_w) = self.before_w {
@@ -189,7 +232,8 @@ impl SpindleBus<'_> {
             shown.state.command(&self.motor, nominal);
         }
         // Whether a word that stops it is waited for, no profile says.
-        let blocks = self.spindle.wait == SpindleWait::Blocks && self.direction == 0.0;
+        let stops = self.direction == 0.0 && self.tap_rpm.is_none();
+        let blocks = self.spindle.wait == SpindleWait::Blocks && stops;
         let unknown = blocks || self.spindle.wait == SpindleWait::Unknown;
         if unknown && !self.states[0].is_steady() {
             self.wait_unknown();
