@@ -5,6 +5,7 @@ mod order;
 mod over_time;
 mod random;
 mod series;
+mod siemens;
 mod surface;
 
 use std::io::Cursor;

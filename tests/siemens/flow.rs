@@ -142,6 +142,36 @@ M17
 ");
 }
 
+/// "PROC … SAVE": the caller's modal G groups are in force again, DIAMON, G96 and G700 among them.
+#[test]
+fn save_gives_back_all_modal_groups() {
+    let with = |main: &str, sub: &str| {
+        let program = format!("{main}M30\n%_N_SUB_SPF\nPROC SUB SAVE\n{sub}M17\n");
+        moves(&program)
+    };
+    let diameters = with(
+        "DIAMOF\nG94 G0 X50\nSUB\nG1 X-100 F1000\n",
+        "DIAMON\nG0 X20\n",
+    );
+    // 0.3 mm at 3000 turns, at 500, at 3000 again.
+    let speeds = with(
+        "LIMS=3000\nG96 S200 M3\nG1 Z-10 F0.3\nSUB\nG1 Z-100\n",
+        "G97 S500\nG1 X60\n",
+    );
+    // 400 inches are 10160 mm.
+    let units = with("G700 G94\nSUB\nG1 X10 F400\n", "G70\nG1 Y1 F1000\n");
+    assert_snapshot!(diameters + &speeds + &units, @r"
+    2 rapid X50
+    9 rapid X10
+    4 feed X-100 F1000
+    3 feed Z-10 F900
+    10 feed X60 F150
+    5 feed Z-100 F900
+    8 feed Y25.4 F1000
+    3 feed X254 F10160
+    ");
+}
+
 /// "Subprogram technique": PROC, VAR parameters, SAVE, RET, in files of their own.
 #[test]
 fn subprograms_in_files_of_their_own() {

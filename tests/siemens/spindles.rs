@@ -59,3 +59,54 @@ fn a_master_spindle_without_a_speed() {
     1 syntax: SETMS(0) names no spindle
     ");
 }
+
+/// "Speed limitation with constant cutting rate (LIMS)": also in a line of its own and in one that
+/// moves; of the master spindle where no number says of which.
+#[test]
+fn limits_of_the_cutting_rate_act_at_once() {
+    let program = "\
+G18
+LIMS=500
+G96 S200 M3
+G1 Z-10 F0.3
+LIMS=3000
+G1 Z-20
+LIMS=1000 G1 Z-30
+LIMS=2000 LIMS[2]=400
+G1 Z-40
+SETMS(2)
+G1 Z-50
+LIMS=600
+G1 Z-60
+SETMS
+G1 Z-70
+";
+    // 0.3 mm at 500, 3000, 1000, 2000, 400, 600 and 2000 turns.
+    assert_snapshot!(moves(program), @r"
+    4 feed Z-10 F150
+    6 feed Z-20 F900
+    7 feed Z-30 F300
+    9 feed Z-40 F600
+    11 feed Z-50 F120
+    13 feed Z-60 F180
+    15 feed Z-70 F600
+    ");
+}
+
+/// "Constant grinding wheel peripheral speed (GWPSON, GWPSOF)": S in m/s is no speed of the
+/// spindle.
+#[test]
+fn the_speed_of_a_grinding_wheel() {
+    let refused = ["GWPSON\nS30 M3", "GWPSON(1) S1=30", "GWPSON\nG96 S30"].map(refusal);
+    assert_snapshot!(refused.join("\n"), @r"
+    2 surface-speed: S is the speed of a grinding wheel at its edge here, in m/s (GWPSON)
+    1 surface-speed: S is the speed of a grinding wheel at its edge here, in m/s (GWPSON)
+    2 surface-speed: S is the speed of a grinding wheel at its edge here, in m/s (GWPSON)
+    ");
+    // 10 turns at 1000/min; 0.1 mm at 2000/min.
+    let program = "S1000 M3\nGWPSON\nG25 S100\nG4 S10\nGWPSOF\nS2000\nG95 F0.1\nG1 X10\n";
+    assert_snapshot!(moves(program), @r"
+    4 dwell 0.6 s
+    8 feed X10 F200
+    ");
+}

@@ -62,7 +62,7 @@ impl Control<'_> {
         }
         let followed = self.spindle.followed_rpm;
         let rpm = followed.unwrap_or_else(|| self.highest_rpm(end, arc));
-        let rpm = rpm.max(self.spindle.tool_rpm);
+        let rpm = rpm.max(self.spindle.tool_rpm).max(self.spindle.left_rpm);
         if self.spindle.surface_mm_min.is_some() {
             let message = "under G96 a feed per revolution counts at the highest spindle speed \
                            of its block";

@@ -13,6 +13,9 @@ const RIGID: u16 = 290;
 /// M19, times ten.
 const ORIENT: u16 = 190;
 
+/// M70 of SINUMERIK, times ten: the spindle becomes an axis.
+const AXIS: u16 = 700;
+
 impl Control<'_> {
     /// Whether canned cycles are those of Fanuc and its relatives.
     fn motion_survives_cycles(&self) -> bool {
@@ -156,7 +159,8 @@ impl Control<'_> {
                     self.change_tool(span, run);
                     continue;
                 }
-                ActionKind::Other if self.rules.free_m_words && self.is_ignored(number) => {}
+                ActionKind::Other
+                    if self.rules.free_m_words && (self.is_ignored(number) || number == AXIS) => {}
                 ActionKind::Other if self.rules.free_m_words => {
                     let message =
                         "M words of the machine's builder are taken as switches that move no axis";

@@ -34,6 +34,16 @@ impl Turning {
         }
     }
 
+    /// The M word that does the same to the spindle where it is not known whether the axes stop
+    /// for it: M13, M14 and M19.
+    pub(super) fn other_word(self) -> f64 {
+        match self {
+            Self::Stopped => 19.0,
+            Self::Clockwise => 13.0,
+            Self::CounterClockwise => 14.0,
+        }
+    }
+
     /// The other direction.
     pub(super) fn reversed(self) -> Self {
         match self {

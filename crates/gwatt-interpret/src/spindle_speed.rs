@@ -22,6 +22,9 @@ pub(super) struct SpindleMode {
     /// The speed of the spindle that feeds per revolution follow, where the program names one
     /// (SINUMERIK: SETMS), 1/min.
     pub(super) followed_rpm: Option<f64>,
+    /// What S may be after a tap with a speed of its own (SINUMERIK), 1/min: the larger of it and
+    /// S counts.
+    pub(super) left_rpm: f64,
     /// The speed of a tool's own spindle on a lathe (OSP: SB), 1/min: feeds per revolution may
     /// follow it.
     pub(super) tool_rpm: f64,
@@ -41,6 +44,7 @@ impl Default for SpindleMode {
             limit_rpm: f64::INFINITY,
             unknown_up_to_rpm: None,
             followed_rpm: None,
+            left_rpm: 0.0,
             tool_rpm: 0.0,
         }
     }

@@ -363,6 +363,10 @@ pub enum ActionKind {
     /// X of the spindle's axis in machine coordinates, mm; not a number where it
     /// is not known.
     SpindleCenter,
+    /// A tap comes in which the spindle is in step with an axis: from rest to this speed, 1/min,
+    /// below 0 the other way round, and to rest again. 0: it is over, and the spindle stands or
+    /// turns as before. Like the others only where the machine has a spindle.
+    TapSpeed,
     /// The tool in the spindle.
     ToolLoaded,
     /// A comment that acts: its place in [`gwatt_machine::MESSAGES`]; under the

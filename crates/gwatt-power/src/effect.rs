@@ -61,6 +61,7 @@ impl Switched {
             | ActionKind::SurfaceSpeed
             | ActionKind::SpindleClamp
             | ActionKind::SpindleCenter
+            | ActionKind::TapSpeed
             | ActionKind::ToolLoaded => return Effect::None,
             ActionKind::Stop | ActionKind::End | ActionKind::Rest => return Effect::Stop,
             ActionKind::ToolChangeInMotion

@@ -88,6 +88,7 @@ impl Control<'_> {
             || !state.adrift.is_empty()
             || state.modal_call.is_some()
             || state.diameter
+            || state.returned
             || state.feed_in_mm
             || state.feed_factor != 1.0
             || state.rounds.is_some()
@@ -112,6 +113,7 @@ impl Control<'_> {
     fn siemens_order(&mut self, state: &mut Siemens, run: &mut Run<'_, '_>) {
         let errors = run.report.diagnostics.errors;
         let before = run.steps.len();
+        state.returned = false;
         self.program_end(state, run);
         let dwell_s = self.siemens_dwell(run);
         self.spindle_modes(state, run);
@@ -128,7 +130,9 @@ impl Control<'_> {
             self.choice.number = Some(word.value as u32);
         }
         self.m_words(run);
-        self.spindle.unknown_up_to_rpm = state.spindle_limit.filter(|_| state.surface_speed);
+        self.orient(state, run);
+        let limit_rpm = state.spindles.limit_rpm();
+        self.spindle.unknown_up_to_rpm = limit_rpm.filter(|_| state.surface_speed);
         self.tell_spindle(run);
         if let Some(dwell_s) = dwell_s {
             self.dwell(run, dwell_s);
@@ -287,7 +291,7 @@ impl Control<'_> {
         if state.surface_speed {
             let span = run.whole();
             let changed = run.words.take(b'S').is_some();
-            match state.spindle_limit {
+            match state.spindles.limit_rpm() {
                 Some(limit) => {
                     let message = "under G96 the spindle is taken at its limit (LIMS)";
                     run.report.note_once("surface-speed", message, span);

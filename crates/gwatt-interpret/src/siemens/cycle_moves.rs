@@ -5,8 +5,9 @@ use super::cycle::Levels;
 use super::cycle_call::{Call, Kind};
 use crate::control::{Control, Run};
 use crate::modal::{Feed, NumberText};
+use crate::special::Turning;
 use gwatt_machine::units::{MM_PER_INCH, SECONDS_PER_MINUTE};
-use gwatt_motion::MoveKind;
+use gwatt_motion::{ActionKind, MoveKind};
 
 /// Strokes of a deep hole that one call may make.
 const STROKES_MAX: usize = 10_000;
@@ -212,7 +213,8 @@ impl Control<'_> {
     ) {
         let rigid = call.kind == Kind::Tap;
         let [size, pitch] = if rigid { [8, 9] } else { [10, 11] };
-        let size = call.value(size).map(f64::abs).filter(|size| *size > 0.0);
+        let signed = call.value(size);
+        let size = signed.map(f64::abs).filter(|size| *size > 0.0);
         let standard_mm = size.and_then(|size| {
             let found = PITCHES
                 .iter()
@@ -220,7 +222,9 @@ impl Control<'_> {
             Some(found.1)
         });
         let unit = call.value(if rigid { 14 } else { 13 });
-        let pitch = call.value(pitch).map(f64::abs).filter(|pitch| *pitch > 0.0);
+        let pitch = call.value(pitch).filter(|pitch| *pitch != 0.0);
+        let left_hand = pitch.or(signed).is_some_and(|pitch| pitch < 0.0);
+        let pitch = pitch.map(f64::abs);
         let pitch_mm = pitch.map(|pitch| self.pitch_mm(pitch, unit.unwrap_or(0.0)));
         let speed = |place| call.value(place).map(f64::abs).filter(|speed| *speed > 0.0);
         let spindle = Some(self.followed_rpm()).filter(|rpm| *rpm > 0.0);
@@ -238,19 +242,71 @@ impl Control<'_> {
         if !state.feed_factor.is_normal() {
             return;
         }
+        let sign = if left_hand { -1.0 } else { 1.0 };
+        let speeds = [speed_in * sign, -speed_out * sign];
         self.plunge(state, MoveKind::Rapid, &levels, levels.safe, run);
         // Overrides do not act on tapping.
         let factor = std::mem::replace(&mut state.feed_factor, 1.0);
-        let mm_s = |rpm: f64| pitch_mm * rpm / SECONDS_PER_MINUTE;
-        let [speed_in, speed_out] = [speed_in, speed_out].map(mm_s);
-        self.special.speed_mm_s = Some(speed_in);
-        self.plunge(state, MoveKind::Tap, &levels, levels.depth, run);
-        self.cycle_wait(call.value(6), run);
-        self.special.speed_mm_s = Some(speed_out);
-        self.plunge(state, MoveKind::Tap, &levels, levels.safe, run);
+        let after = self.tap_begins(rigid, call, run);
+        for (rpm, to) in speeds.into_iter().zip([levels.depth, levels.safe]) {
+            if rigid {
+                self.tap_turns(rpm, run);
+            }
+            self.special.speed_mm_s = Some(pitch_mm * rpm.abs() / SECONDS_PER_MINUTE);
+            self.plunge(state, MoveKind::Tap, &levels, to, run);
+            if to == levels.depth {
+                self.cycle_wait(call.value(6), run);
+            }
+            if !rigid && to == levels.depth {
+                self.cycle_turns(self.special.spindle.reversed(), run);
+            }
+        }
         self.special.speed_mm_s = None;
         state.feed_factor = factor;
+        if rigid {
+            self.tap_turns(0.0, run);
+            let own = [speed_in, speed_out].map(|rpm| rpm.max(self.spindle.left_rpm));
+            self.spindle.left_rpm = own[0].max(own[1]);
+            self.tell_spindle(run);
+        }
         self.plunge(state, MoveKind::Rapid, &levels, levels.retract, run);
+        if let Some(after) = after {
+            self.cycle_turns(after, run);
+        }
+    }
+
+    /// How the spindle turns after a tap (SDAC); `None`: as before. A rigid one begins with an
+    /// oriented stop, the other needs a spindle that turns.
+    fn tap_begins(&mut self, rigid: bool, call: &Call, run: &mut Run<'_, '_>) -> Option<Turning> {
+        let after = match call.value(if rigid { 7 } else { 8 }) {
+            Some(3.0) => Some(Turning::Clockwise),
+            Some(4.0) => Some(Turning::CounterClockwise),
+            Some(5.0) => Some(Turning::Stopped),
+            _ => None,
+        };
+        if rigid {
+            if after.is_some() {
+                self.cycle_turns(Turning::Stopped, run);
+            }
+            return after;
+        }
+        let turns = |turning: &Turning| *turning != Turning::Stopped;
+        let before = Some(self.special.spindle).filter(turns);
+        let into = before.or(after.filter(turns)).unwrap_or(Turning::Clockwise);
+        if before.is_none() {
+            self.cycle_turns(into, run);
+        }
+        Some(after.unwrap_or(into))
+    }
+
+    /// A cycle turns the spindle or stops it. Whether the path goes on meanwhile is not known,
+    /// as for M words of others.
+    fn cycle_turns(&mut self, turning: Turning, run: &mut Run<'_, '_>) {
+        self.special.spindle = turning;
+        self.note_spindle(run);
+        if self.machine.spindle.is_some() {
+            run.act(ActionKind::Other, turning.other_word());
+        }
     }
 
     /// "Boring 1 (CYCLE85)": in at FFR, out at RFF. CYCLE89: both at F.
@@ -269,8 +325,8 @@ impl Control<'_> {
         self.plunge(state, MoveKind::Rapid, &levels, levels.retract, run);
     }
 
-    /// "Boring 2 (CYCLE86)": the tool moves aside by RPA, RPO and RPAP before
-    /// it goes out.
+    /// "Boring 2 (CYCLE86)": SDIR turns the spindle, and after an oriented stop the tool moves
+    /// aside by RPA, RPO and RPAP before it goes out.
     pub(super) fn bore_aside(
         &mut self,
         state: &mut Siemens,
@@ -280,9 +336,18 @@ impl Control<'_> {
     ) {
         let [first, second, normal] = self.modal.plane;
         let here = state.program_place(&self.position.at);
+        let turning = match call.value(7) {
+            Some(3.0) => Turning::Clockwise,
+            Some(4.0) => Turning::CounterClockwise,
+            // Left out: as before, or as it is used to.
+            _ if self.special.spindle == Turning::Stopped => Turning::Clockwise,
+            _ => self.special.spindle,
+        };
+        self.cycle_turns(turning, run);
         self.plunge(state, MoveKind::Rapid, &levels, levels.safe, run);
         self.plunge(state, MoveKind::Feed, &levels, levels.depth, run);
         self.cycle_wait(call.value(6), run);
+        self.cycle_turns(Turning::Stopped, run);
         let by = |place| call.value(place).unwrap_or(0.0) * self.modal.mm_per_unit;
         let aside = [
             (first, here[first] + by(8)),

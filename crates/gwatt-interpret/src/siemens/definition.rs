@@ -223,6 +223,7 @@ impl Reading<'_, '_, '_> {
                     let saved = Saved {
                         modal: self.control.modal.clone(),
                         frame: self.state.frame.clone(),
+                        modes: self.state.modes(),
                         levels: self.control.knobs.levels,
                     };
                     if let Some(Scope { saved: slot, .. }) = self.state.scopes.last_mut() {

@@ -155,6 +155,8 @@ pub(super) struct Siemens {
     active: bool,
     /// Blocks of plain motion need care too.
     special: bool,
+    /// A subprogram has given back what the next block has to put in force.
+    returned: bool,
     frame: Frame,
     /// Full turns that rotary axes have made by DC, ACP and ACN.
     turns: AxisValues,
@@ -171,8 +173,6 @@ pub(super) struct Siemens {
     /// DIAM90: increments of X are radii.
     radius_increments: bool,
     polar: Polar,
-    /// LIMS, 1/min.
-    spindle_limit: Option<f64>,
     surface_speed: bool,
     spindles: spindle_speeds::Spindles,
     /// G70: F stays in mm.
@@ -182,6 +182,8 @@ pub(super) struct Siemens {
     rounds: Option<Insert>,
     /// I, J and K of G331.
     tap_lead: [Option<f64>; 3],
+    /// -1 for a left-hand thread.
+    tap_sign: f64,
     limits: limits::Limits,
     smoothing: smoothing::Smoothing,
 }
@@ -208,6 +210,7 @@ impl Siemens {
             extra: Extra::default(),
             active: false,
             special: true,
+            returned: false,
             frame: Frame::default(),
             turns: [0.0; AXES],
             local: [0.0; AXES],
@@ -218,13 +221,13 @@ impl Siemens {
             diameter: false,
             radius_increments: false,
             polar: Polar::default(),
-            spindle_limit: None,
             surface_speed: false,
             spindles: spindle_speeds::Spindles::default(),
             feed_in_mm: false,
             radius: radius::Radius::default(),
             rounds: None,
             tap_lead: [None; 3],
+            tap_sign: 1.0,
             limits: limits::Limits::new(),
             smoothing: smoothing::Smoothing::default(),
         }
@@ -313,6 +316,7 @@ impl Siemens {
         }
         modal.feed_mode_word = saved.modal.feed_mode_word;
         self.frame = saved.frame;
+        self.restore(&saved.modes);
         knobs.select_all(machine, saved.levels);
         true
     }

@@ -2,7 +2,6 @@
 
 use super::frame::Frame;
 use super::reading::Reading;
-use super::spindle_speeds::{SPINDLES_MAX, Said};
 use crate::compensation::Insert;
 use crate::expression::{Grammar, Outcome};
 use crate::level_words::named;
@@ -63,12 +62,6 @@ impl Reading<'_, '_, '_> {
             }
             // "Chamfer, rounding (CHF, CHR, RND, RNDM)".
             "CHF" | "CHR" | "RND" | "RNDM" => self.corner_word(name, start)?,
-            "LIMS" => {
-                self.index()?;
-                let value = self.value_behind(name, start)?;
-                self.state.spindle_limit = Some(value.abs());
-            }
-            "SETMS" => self.master_spindle(start)?,
             "OVR" => self.feed_override(start)?,
             "ACC" | "OVRRAP" | "OVRA" | "VELOLIM" | "ACCLIMA" | "VELOLIMA" | "JERKLIM"
             | "JERKLIMA" => self.limit(name, start)?,
@@ -100,7 +93,7 @@ impl Reading<'_, '_, '_> {
                 }
                 self.cursor.at += 1;
             }
-            _ => return Ok(false),
+            _ => return self.spindle_word(name, start),
         }
         Ok(true)
     }
@@ -111,22 +104,6 @@ impl Reading<'_, '_, '_> {
         let at = &self.control.position.at;
         self.state.change_frame(Frame::default(), at);
         self.extra().deselects = true;
-    }
-
-    /// "SETMS": the spindle that feeds per revolution follow; without a number that of power-on.
-    fn master_spindle(&mut self, start: usize) -> Outcome<()> {
-        let mut number = f64::from(Said::BACK);
-        if self.cursor.take(b'(') && !self.cursor.take(b')') {
-            number = self.number()?;
-            self.cursor.expect(b')')?;
-        }
-        if !(1.0..=f64::from(SPINDLES_MAX)).contains(&number) || number.fract() != 0.0 {
-            let message = format!("SETMS({number}) names no spindle");
-            let help = "write its number, from 1 on";
-            return Err(self.cursor.fault("syntax", message, help, start));
-        }
-        self.extra().spindles.master = Some(number as u32);
-        Ok(())
     }
 
     fn corner_word(&mut self, name: &str, start: usize) -> Outcome<()> {

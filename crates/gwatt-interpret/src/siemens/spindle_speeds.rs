@@ -15,6 +15,10 @@ pub(super) struct Spindles {
     speeds: BTreeMap<u32, f64>,
     /// The one of SETMS; `None`: that word has not come yet.
     master: Option<u32>,
+    /// LIMS, 1/min.
+    limits: BTreeMap<u32, f64>,
+    /// GWPSON: S is the speed of a grinding wheel at its edge, m/s.
+    pub(super) grinds: bool,
     /// The highest limit of G25, below which no spindle turns, 1/min.
     pub(super) least_rpm: f64,
 }
@@ -26,6 +30,10 @@ pub(super) struct Said {
     pub(super) speeds: Vec<(u32, f64)>,
     /// `SETMS(2)`.
     pub(super) master: Option<u32>,
+    /// `LIMS=3000`, `LIMS[2]=500`.
+    pub(super) limits: Vec<(Option<u32>, f64)>,
+    /// SPOS and the like of the spindle that is counted: it stops.
+    pub(super) orients: bool,
 }
 
 impl Said {
@@ -34,10 +42,28 @@ impl Said {
 }
 
 impl Spindles {
-    pub(super) fn take(&mut self, said: &Said, plain: Option<f64>) {
+    /// SETMS and LIMS of a block ("LIMS": without a number it is for the master spindle).
+    pub(super) fn choose(&mut self, said: &Said) {
         self.master = said.master.or(self.master);
+        let master = self.master();
+        let limits = said.limits.iter();
+        self.limits
+            .extend(limits.map(|(number, limit)| (number.unwrap_or(master), *limit)));
+    }
+
+    /// The master spindle.
+    pub(super) fn master(&self) -> u32 {
+        self.master.unwrap_or(FIRST)
+    }
+
+    /// Its limit under G96, 1/min.
+    pub(super) fn limit_rpm(&self) -> Option<f64> {
+        self.limits.get(&self.master()).copied()
+    }
+
+    pub(super) fn take(&mut self, said: &Said, plain: Option<f64>) {
         if let Some(speed) = plain {
-            self.speeds.insert(self.master.unwrap_or(FIRST), speed);
+            self.speeds.insert(self.master(), speed);
         }
         let speeds = said.speeds.iter().copied();
         self.speeds

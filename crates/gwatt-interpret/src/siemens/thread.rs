@@ -7,7 +7,7 @@ use super::target::Target;
 use crate::control::{Control, Run};
 use crate::thread::FIXED;
 use gwatt_machine::units::SECONDS_PER_MINUTE;
-use gwatt_motion::{MoveKind, Step};
+use gwatt_motion::{ActionKind, MoveKind, Step};
 
 /// Axes that have leads: X, Y and Z with I, J and K.
 const LEADS: usize = 3;
@@ -32,10 +32,28 @@ impl Control<'_> {
             MoveKind::Tap
         };
         self.special.speed_mm_s = Some(speed_mm_s);
+        if kind == MoveKind::Tap {
+            // G332 reverses it ("Reversal of the spindle direction of rotation occurs
+            // automatically").
+            let sign = state.tap_sign * if number == 3310 { 1.0 } else { -1.0 };
+            self.tap_turns(sign * self.followed_rpm(), run);
+        }
         let factor = std::mem::replace(&mut state.feed_factor, 1.0);
         self.siemens_go(state, run, kind, target, None);
         state.feed_factor = factor;
         self.special.speed_mm_s = None;
+        if kind == MoveKind::Tap {
+            self.tap_turns(0.0, run);
+        }
+    }
+
+    /// Turns the spindle in step with the axis of a tap, at a speed with its sign; 0: the tap is
+    /// over.
+    pub(super) fn tap_turns(&self, rpm: f64, run: &mut Run<'_, '_>) {
+        self.note_spindle(run);
+        if self.machine.spindle.is_some() {
+            run.act(ActionKind::TapSpeed, rpm);
+        }
     }
 
     /// The path's speed, mm/s: the lead counts along its own axis. A lead of a
@@ -65,6 +83,7 @@ impl Control<'_> {
                 .help("write I, J or K for the axis X, Y or Z: the way in one revolution");
             return None;
         };
+        state.tap_sign = lead.signum();
         let lead_mm = lead.abs() * self.modal.mm_per_unit;
         let here = state.program_place(&self.position.at);
         let way = |axis: usize| target.program[axis] - here[axis];

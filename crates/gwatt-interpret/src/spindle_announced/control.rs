@@ -13,7 +13,7 @@ impl Control<'_> {
         let max_rpm = spindle.max_rpm;
         let mut now = self.announced;
         now.tool = self.tool_in_use();
-        now.rpm = self.modal.spindle_rpm;
+        now.rpm = self.modal.spindle_rpm.max(self.spindle.left_rpm);
         (now.surface_mm_s, now.clamp_rpm, now.center) = (0.0, 0.0, None);
         if let Some(limit_rpm) = self.spindle.unknown_up_to_rpm {
             // Any speed up to the limit: how it follows X is not known.

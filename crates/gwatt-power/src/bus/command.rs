@@ -22,6 +22,7 @@ impl SpindleBus<'_> {
             | ActionKind::SurfaceSpeed
             | ActionKind::SpindleClamp
             | ActionKind::SpindleCenter
+            | ActionKind::TapSpeed
             | ActionKind::ToolLoaded
             | ActionKind::ToolSelect
             | ActionKind::ToolChange
@@ -82,7 +83,10 @@ impl SpindleBus<'_> {
     fn may_act_after(&self, action: &Action, next: Option<&Move>) -> bool {
         let turns = !matches!(
             action.kind,
-            ActionKind::ToolLoaded | ActionKind::ToolSelect | ActionKind::SpindleCenter
+            ActionKind::ToolLoaded
+                | ActionKind::ToolSelect
+                | ActionKind::SpindleCenter
+                | ActionKind::TapSpeed
         );
         // Lines of other texts have the same numbers: what is taken for one counts higher.
         turns
@@ -102,6 +106,22 @@ impl SpindleBus<'_> {
         let own = self.states[0].henceforth(&self.motor);
         let lower = self.slower.as_ref().map(|it| it.henceforth(&self.motor));
         [own, widest(own, lower.unwrap_or(own))]
+    }
+
+    /// A new speed is asked for before or after the motion of its block: from any speed that the
+    /// spindle may have had meanwhile.
+    fn command_unsure(&mut self, target: f64) {
+        if self.states[0].is_steady() {
+            self.states[0].command(&self.motor, target);
+            self.states[0].blur();
+        } else {
+            let range = self.states[0].range();
+            self.states[0].wander(&self.motor, range, target);
+        }
+        if let Some(slower) = &mut self.slower {
+            let range = slower.state.range();
+            slower.wander(&self.motor, range, target, false);
+        }
     }
 
     /// Extremes of a move at the largest overrides, and at lower ones, where a word of its block may
@@ -134,6 +154,8 @@ impl SpindleBus<'_> {
                     sign: 1.0,
                 });
             }
+            ActionKind::TapSpeed if value == 0.0 => return self.tapped(),
+            ActionKind::TapSpeed => self.tap_rpm = Some(value),
             ActionKind::ToolLoaded => {
                 self.cutting.load(value);
                 return;
@@ -170,7 +192,32 @@ impl SpindleBus<'_> {
             _ if value == 4.0 || value == 14.0 => self.direction = -1.0,
             _ => self.direction = 0.0,
         }
+        self.lost &= matches!(
+            action.kind,
+            ActionKind::SpindleRpm | ActionKind::SurfaceSpeed
+        );
         self.asked = Some(action.line);
+    }
+
+    /// A tap is over, and its axis stands, and the spindle with it. Where that turned before, it
+    /// may turn on by itself or wait for a word.
+    fn tapped(&mut self) {
+        self.tap_rpm = None;
+        self.asked = None;
+        self.lost = self.direction != 0.0;
+        let slower = self.slower.as_mut().map(|slower| &mut slower.state);
+        for (side, state) in self.states.iter_mut().chain(slower).enumerate() {
+            let factor = self.overrides[usize::from(side == 1)].spindle;
+            let rpm = self.rpm.unwrap_or(self.spindle.max_rpm) * factor;
+            state.follow(self.direction * rpm.min(self.spindle.max_rpm));
+            state.lose(&self.motor);
+        }
+        let nominal = self.target(self.overrides[1].spindle);
+        if let Some(shown) = &mut self.shown {
+            shown.state.follow(0.0);
+            shown.state.command(&self.motor, nominal);
+        }
+        self.switched_on = self.direction != 0.0;
     }
 
     /// Something takes a time that is not known.
@@ -184,6 +231,10 @@ impl SpindleBus<'_> {
     /// The speed that is asked for now, 1/min, at an override.
     pub(super) fn target(&self, factor: f64) -> f64 {
         let max = self.spindle.max_rpm;
+        if let Some(rpm) = self.tap_rpm {
+            // An override below 100 % may not act on it.
+            return (rpm * factor.max(1.0)).clamp(-max, max);
+        }
         // Without S what was in force before the program.
         let rpm = self.rpm.unwrap_or(max);
         self.direction * (rpm * factor).min(max)
@@ -201,29 +252,26 @@ impl SpindleBus<'_> {
             return;
         };
         self.commands = self.commands.wrapping_add(1);
-        let unsure = self.unsure == Some(line);
+        let in_step = self.tap_rpm.is_some();
+        let unsure = self.unsure == Some(line) && !in_step;
         let was_on = self.switched_on;
-        self.switched_on = self.direction != 0.0 && (was_on || !unsure);
+        self.switched_on = (self.direction != 0.0 || in_step) && (was_on || !unsure);
         for side in 0..2 {
             let target = self.target(self.overrides[side].spindle);
             if unsure && side == 0 {
-                // From any speed that it may have had meanwhile.
-                if self.states[0].is_steady() {
-                    self.states[0].command(&self.motor, target);
-                    self.states[0].blur();
-                } else {
-                    let range = self.states[0].range();
-                    self.states[0].wander(&self.motor, range, target);
-                }
-                if let Some(slower) = &mut self.slower {
-                    let range = slower.state.range();
-                    slower.wander(&self.motor, range, target, false);
-                }
-                continue;
+                self.command_unsure(target);
+            } else {
+                self.states[side].command(&self.motor, target);
             }
-            self.states[side].command(&self.motor, target);
-            if let (0, Some(slower)) = (side, &mut self.slower) {
+            if let (0, false, Some(slower)) = (side, unsure, &mut self.slower) {
                 slower.command(&self.motor, target);
+            }
+            if self.lost {
+                // A speed alone does not say whether it turns.
+                self.states[side].lose(&self.motor);
+                if let (0, Some(slower)) = (side, &mut self.slower) {
+                    slower.state.lose(&self.motor);
+                }
             }
         }
         let nominal = self.target(self.overrides[1].spindle);
@@ -231,7 +279,8 @@ impl SpindleBus<'_> {
             shown.state.command(&self.motor, nominal);
         }
         // Whether a word that stops it is waited for, no profile says.
-        let blocks = self.spindle.wait == SpindleWait::Blocks && self.direction == 0.0;
+        let stops = self.direction == 0.0 && self.tap_rpm.is_none();
+        let blocks = self.spindle.wait == SpindleWait::Blocks && stops;
         let unknown = blocks || self.spindle.wait == SpindleWait::Unknown;
         if unknown && !self.states[0].is_steady() {
             self.wait_unknown();

@@ -82,7 +82,8 @@ impl SpindleBus<'_> {
 
     /// What cutting takes during a move.
     pub(super) fn taken(&self, mv: &Move) -> Taken {
-        if self.direction == 0.0 && self.before_w.is_none() {
+        let turns = self.direction != 0.0 || self.tap_rpm.is_some();
+        if !turns && self.before_w.is_none() {
             return Taken::default();
         }
         self.cutting.of_move(mv.kind)

@@ -29,7 +29,8 @@ impl SpindleBus<'_> {
         mv: &Move,
         assessment: &Assessment,
     ) -> Option<Followed> {
-        let surface = self.surface.filter(|_| self.direction != 0.0)?;
+        let turns = self.direction != 0.0 && self.tap_rpm.is_none();
+        let surface = self.surface.filter(|_| turns)?;
         let max = self.spindle.max_rpm;
         let of = |side: usize| {
             let factor = self.overrides[side].spindle;

@@ -23,6 +23,7 @@ mod lowered;
 
 use std::collections::VecDeque;
 
+use self::follow::Followed;
 use self::lowered::Slower;
 use self::queued::Queued;
 pub(super) use self::shown::Shown;
@@ -62,6 +63,10 @@ pub(super) struct SpindleBus<'m> {
     switched_on: bool,
     /// S; `None`: the program has not said.
     rpm: Option<f64>,
+    /// In step with the axis of a tap, 1/min, signed.
+    tap_rpm: Option<f64>,
+    /// After a tap: it turns on by itself, or waits for a word.
+    lost: bool,
     surface: Option<Surface>,
     clamp_rpm: f64,
     center_mm: f64,
@@ -116,6 +121,8 @@ impl<'m> SpindleBus<'m> {
             direction: 0.0,
             switched_on: false,
             rpm: None,
+            tap_rpm: None,
+            lost: false,
             surface: None,
             clamp_rpm: spindle.max_rpm,
             center_mm: f64::NAN,
@@ -173,11 +180,7 @@ impl<'m> SpindleBus<'m> {
         let mut judged = *assessment;
         let duration_s = assessment.fastest_s;
         let followed = self.follow_surface(mv, assessment);
-        let tapping = (mv.kind == MoveKind::Tap).then(|| {
-            let n = self.states[0].target().abs();
-            self.motor.extremes(-n, n)
-        });
-        let covered = followed.as_ref().map(|it| it.extremes).or(tapping);
+        let covered = self.covered(mv, followed.as_ref());
         let either = self.either_order(covered);
         let covered = either.map(|[own, _]| own).or(covered);
         let cutting_w = self.cut(mv, &mut judged);
@@ -239,6 +242,19 @@ impl<'m> SpindleBus<'m> {
             None => self.last = Some(mv.clone()),
         }
         sink(mv, &judged, text);
+    }
+
+    /// Largest and smallest power during a move that turns the spindle: one that follows the
+    /// surface, and a tap, which reverses it.
+    fn covered(&self, mv: &Move, followed: Option<&Followed>) -> Option<[f64; 2]> {
+        let tapping = (mv.kind == MoveKind::Tap).then(|| {
+            let n = self.states[0].target().abs();
+            self.motor.extremes(-n, n)
+        });
+        match (followed.map(|it| it.extremes), tapping) {
+            (Some(one), Some(other)) => Some([one[0].max(other[0]), one[1].min(other[1])]),
+            (one, other) => one.or(other),
+        }
     }
 
     /// Adds the spindle to what the axes ask for: exactly, where its run and their plan are
