@@ -160,10 +160,8 @@ fn boring_stops_the_spindle_in_its_place() {
         .filter(|index| moves[*index].kind == Feed)
         .collect();
     assert_eq!(feeds.len(), 2);
-    // √(1 m/s² · 8 mm) = 0.0894 m/s: 89.4 W in 0.18 s; the feed, as fast as 100 mm/s, takes 100 W.
+    // The feed at 100 mm/s takes 100 W, and when the run-up began is not known.
     near(moves[feeds[0]].peak_w, 100.0);
-    let run_up = |index: usize| moves[index].peak_w;
-    let most = run_up(feeds[1]).max(run_up(feeds[1] + 1));
-    assert!((FULL_W..=FULL_W + 100.0).contains(&most), "{most}");
+    near(moves[feeds[1]].peak_w, FULL_W + 100.0);
     near(moves[moves.len() - 1].peak_w, FULL_W + 1000.0);
 }
