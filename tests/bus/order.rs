@@ -75,11 +75,14 @@ fn words_of_earlier_blocks_come_first() {
 /// A gear that is changed in a block that moves, and a dwell.
 #[test]
 fn gears_and_dwells_have_no_order_either() {
-    let peaks = |program| peaks("iso", None, program);
-    let found = peaks("M3 S3000\nG4 P5\nG0 X2000 M41\nX0\nX2000\n");
+    let found = peaks(
+        "haas",
+        None,
+        "M3 S3000\nG4 P5.\nG0 X2000. M41\nX0\nX2000.\n",
+    );
     assert!(found[2][0] > 1000.0 + 0.99 * FULL_W, "{found:?}");
     assert_near(&found[3..], &[AXIS]);
-    let found = peaks("G4 P2 M3 S3000\nG0 X2000\nX0\n");
+    let found = peaks("iso", None, "G4 P2 M3 S3000\nG0 X2000\nX0\n");
     assert_near(&found[1..], &[STARTS, AXIS]);
 }
 

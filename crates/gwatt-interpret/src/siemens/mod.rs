@@ -32,6 +32,7 @@ mod radius;
 mod radius_words;
 mod reading;
 mod saved;
+mod saving;
 mod setting;
 mod smoothing;
 mod spindle_speeds;

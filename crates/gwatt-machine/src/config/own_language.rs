@@ -17,6 +17,7 @@ pub(crate) fn take(
     language: &mut Language,
 ) {
     let own = &table.value;
+    order(own, language);
     let dialect = &mut language.dialect;
     dialect.point = own.decimal_point.or(dialect.point);
     dialect.point_is_known = own.decimal_point.is_some();
@@ -26,10 +27,6 @@ pub(crate) fn take(
     if let Some(feed) = own.feed {
         dialect.per_revolution = Some(feed == FeedName::PerRevolution);
     }
-    if let Some(first) = own.spindle_before_motion {
-        language.spindle_before_motion = first;
-    }
-    language.tool_change = own.tool_change.or(language.tool_change);
     if let Some(axes) = &own.tool_change_moves {
         language.tool_change_moves = Some(listed_words::axes_named(findings, axes));
     }
@@ -159,4 +156,11 @@ fn covers(by: &Command, one: &Command) -> bool {
         Command::Macro(name) => by.is_macro(name.as_bytes()),
         Command::Macros(begin) => matches!(by, Command::Macros(_)) && by.is_macro(begin.as_bytes()),
     }
+}
+
+/// When words act that stand in a block that moves.
+fn order(own: &OwnLanguageTable, language: &mut Language) {
+    let before = own.spindle_before_motion;
+    language.spindle_before_motion = before.unwrap_or(language.spindle_before_motion);
+    language.tool_change = own.tool_change.or(language.tool_change);
 }

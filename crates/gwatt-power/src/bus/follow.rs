@@ -4,7 +4,7 @@ use super::SpindleBus;
 use crate::Assessment;
 use crate::spindle_state::SpindleState;
 use crate::surface_speed::{Speeds, Surface};
-use gwatt_motion::Move;
+use gwatt_motion::{Move, MoveKind};
 use gwatt_plan::{blended_speed, plan};
 
 /// What following the surface takes during a move.
@@ -139,6 +139,19 @@ impl SpindleBus<'_> {
         }
         self.wander_lower(speeds.range, speeds.end, most_rpm);
         self.wandering()
+    }
+
+    /// Largest and smallest power during a move that turns the spindle: one that follows the
+    /// surface, and a tap, which reverses it.
+    pub(super) fn covered(&self, mv: &Move, followed: Option<&Followed>) -> Option<[f64; 2]> {
+        let tapping = (mv.kind == MoveKind::Tap).then(|| {
+            let n = self.states[0].target().abs();
+            self.motor.extremes(-n, n)
+        });
+        match (followed.map(|it| it.extremes), tapping) {
+            (Some(one), Some(other)) => Some([one[0].max(other[0]), one[1].min(other[1])]),
+            (one, other) => one.or(other),
+        }
     }
 
     /// Somewhere between two speeds, and on the way to a target; turned down, at any lower

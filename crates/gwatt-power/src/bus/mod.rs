@@ -23,7 +23,6 @@ mod lowered;
 
 use std::collections::VecDeque;
 
-use self::follow::Followed;
 use self::lowered::Slower;
 use self::queued::Queued;
 pub(super) use self::shown::Shown;
@@ -242,19 +241,6 @@ impl<'m> SpindleBus<'m> {
             None => self.last = Some(mv.clone()),
         }
         sink(mv, &judged, text);
-    }
-
-    /// Largest and smallest power during a move that turns the spindle: one that follows the
-    /// surface, and a tap, which reverses it.
-    fn covered(&self, mv: &Move, followed: Option<&Followed>) -> Option<[f64; 2]> {
-        let tapping = (mv.kind == MoveKind::Tap).then(|| {
-            let n = self.states[0].target().abs();
-            self.motor.extremes(-n, n)
-        });
-        match (followed.map(|it| it.extremes), tapping) {
-            (Some(one), Some(other)) => Some([one[0].max(other[0]), one[1].min(other[1])]),
-            (one, other) => one.or(other),
-        }
     }
 
     /// Adds the spindle to what the axes ask for: exactly, where its run and their plan are
