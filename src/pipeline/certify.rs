@@ -456,7 +456,8 @@ impl<'m, 'r> Verdict<'m, 'r> {
                 self.paced.push(Paced::of(&self.model, place, mv, after));
             }
             self.before = Some(place);
-            compare(&self.model, original, mv, after, text, &mut self.reasons);
+            let model = (self.machine, &self.model);
+            compare(model, original, mv, after, text, &mut self.reasons);
         }
         let Some(after) = &self.add_piece(after) else {
             return;

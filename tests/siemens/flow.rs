@@ -274,3 +274,21 @@ fn a_subprogram_with_parameters_by_itself() {
     assert_eq!(run("PROC HOLE(REAL D=4)\nG0 X=D\nM17\n"), Ok(false));
     assert_eq!(run("PROC HOLE\nG0 X4\nM17\n"), Ok(false));
 }
+
+/// Each head is a file of its own on the control: which program is meant is the main one.
+#[test]
+fn a_main_program_after_a_subprogram_is_refused() {
+    let sub = "%_N_SUB_SPF\nG1 Y10 F100\nM17\n";
+    let main = "%_N_MAIN_MPF\nG0 X100\nSUB\nM30\n";
+    let found = moves(&format!("{sub}{main}"));
+    assert!(
+        found.contains("several-programs: a main program after a subprogram"),
+        "{found}"
+    );
+    let found = moves(&format!("{main}{sub}"));
+    assert!(
+        found.contains("rapid X100") && found.contains("Y10"),
+        "{found}"
+    );
+    assert!(!found.contains("several-programs"), "{found}");
+}

@@ -255,3 +255,28 @@ fn a_feed_after_a_variable_is_no_part_of_its_name() {
         shop.get("out.mpf")
     );
 }
+
+/// SAVE gives back the groups of BRISK and of G641.
+#[test]
+fn save_gives_back_jerk_and_smoothing() {
+    let machine = machine_from(&format!(
+        "schema = 1\nname = \"test\"\ncontroller = \"siemens\"\n[path]\nmode = \"exact-stop\"\n\
+         [converter]\npeak_power_w = 9000\n{}",
+        linear_axes("XYZ", [30000.0, 5000.0, 500.0], "jerk_mm_s3 = 50000")
+    ));
+    let program = "BRISK\nG0 X100\nSUB\nX0\nM30\n%_N_SUB_SPF\nPROC SUB SAVE\nSOFT\nX50\nM17\n";
+    let rows = rows_of(&machine, program);
+    let full: Vec<bool> = rows.iter().map(|row| row.peak_w > 1249.9).collect();
+    assert_eq!(full, [true, false, true]);
+    let shop = Shop::straight("siemens", 400.0);
+    shop.put(
+        "a.mpf",
+        "G641 ADIS=1\nSUB\nG0 X500\nG0 X1000 Y500\nM30\n%_N_SUB_SPF\nPROC SUB SAVE\nG64\nM17\n",
+    );
+    let (code, _, errors) = shop.run("limit a.mpf -o out.mpf");
+    assert_eq!(code, 1, "{errors}");
+    assert!(
+        errors.contains("ADIS rounds corners of feeds more"),
+        "{errors}"
+    );
+}

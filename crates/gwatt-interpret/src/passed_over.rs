@@ -2,6 +2,7 @@
 //! for the control.
 
 use super::control::Control;
+use super::own_state::OwnState;
 use super::report::Report;
 use gwatt_syntax::Block;
 use gwatt_syntax::source::Span;
@@ -12,11 +13,34 @@ impl Control<'_> {
         self.skips(block, report) || self.refuses_hidden_words(block, report)
     }
 
+    /// SINUMERIK: `%_N_NAME_MPF` and `%_N_NAME_SPF` begin programs, each a file of its own on the
+    /// control. Where a subprogram comes first, it would be judged in place of the main program.
+    fn meet_head(&mut self, report: &mut Report<'_, '_>) {
+        let OwnState::Siemens(state) = &mut self.own else {
+            return;
+        };
+        let head = report.text.trim_ascii().to_ascii_uppercase();
+        if !head.starts_with(b"%_N_") {
+            return;
+        }
+        if head.ends_with(b"_SPF") && !self.begun {
+            state.begins_with_subprogram = true;
+        } else if head.ends_with(b"_MPF") && state.begins_with_subprogram {
+            let message = "a main program after a subprogram: it would not be looked at";
+            let help = "put the main program first, or each into a file of its own";
+            let span = Span::new(0, report.text.trim_ascii_end().len());
+            report.error("several-programs", message, span).help(help);
+        }
+    }
+
     fn skips(&mut self, block: &Block, report: &mut Report<'_, '_>) -> bool {
         let all = Span::new(0, block.text_end as usize);
         let says_something = !(block.words.is_empty() && block.issues.is_empty());
         if self.ended && self.goes_on && !block.tape && says_something {
             (self.ended, self.goes_on) = (false, false);
+        }
+        if block.tape {
+            self.meet_head(report);
         }
         if self.ended {
             if !(block.tape || block.words.is_empty() && block.issues.is_empty()) {

@@ -173,6 +173,12 @@ impl SpindleState {
                 accel: 0.0,
             }),
             Course::Run(trace, [least, most]) if least == most => Some(trace.at(*least)),
+            // On its way there already.
+            Course::Somewhere {
+                target: asked,
+                left_s: Some(_),
+                ..
+            } if *asked == target => return,
             _ => None,
         };
         match start {

@@ -3,6 +3,7 @@
 
 use super::{BUG, Reasons};
 use crate::interpret::{Move, MoveKind};
+use crate::machine::Machine;
 use crate::pipeline::expected::ExpectedMove;
 use crate::pipeline::split::BESIDE_MM;
 use crate::power::{Assessment, PowerModel};
@@ -15,7 +16,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// (a), (c) and (d) for one move.
 pub(super) fn compare(
-    model: &PowerModel,
+    (machine, model): (&Machine, &PowerModel),
     original: &ExpectedMove,
     mv: &Move,
     after: &Assessment,
@@ -38,7 +39,9 @@ pub(super) fn compare(
         asked.is_faster(mv, rounding) || !original.as_feed && asked.is_harder(mv, rounding);
     // What is left along the path may rise where a limit falls: of arcs under limits of jerk, and of
     // slower moves under a curve of force.
-    let may_rise = after.speed_mm_s < original.speed_mm_s || mv.arc.is_some();
+    let has_jerk = |axis: usize| machine.axes[axis].is_some_and(|it| it.jerk_mm_s3 > 0.0);
+    let jerky_arc = mv.arc.is_some() && mv.moving.iter().any(has_jerk);
+    let may_rise = after.speed_mm_s < original.speed_mm_s || jerky_arc;
     if asks_more
         || rises(original.speed_mm_s, after.speed_mm_s)
         || !may_rise && rises(original.accel_mm_s2, after.accel_mm_s2)

@@ -113,7 +113,11 @@ impl Control<'_> {
     fn siemens_order(&mut self, state: &mut Siemens, run: &mut Run<'_, '_>) {
         let errors = run.report.diagnostics.errors;
         let before = run.steps.len();
-        state.returned = false;
+        if std::mem::take(&mut state.returned) {
+            // What SAVE has given back.
+            self.raise_limits(&state.limits);
+            state.limits.due = true;
+        }
         self.program_end(state, run);
         let dwell_s = self.siemens_dwell(run);
         self.spindle_modes(state, run);

@@ -187,6 +187,8 @@ pub(super) struct Siemens {
     tap_sign: f64,
     limits: limits::Limits,
     smoothing: smoothing::Smoothing,
+    /// The head of a subprogram is the first of the file.
+    pub(super) begins_with_subprogram: bool,
 }
 
 impl Siemens {
@@ -231,6 +233,7 @@ impl Siemens {
             tap_sign: 1.0,
             limits: limits::Limits::new(),
             smoothing: smoothing::Smoothing::default(),
+            begins_with_subprogram: false,
         }
     }
 
