@@ -44,8 +44,81 @@ struct Way {
     from: usize,
 }
 
+/// A level at which a stage may begin.
+///
+/// A stage from the speed `u` to `w` with the acceleration `a` loses, against the top speed `V`,
+/// `(w − u)/a − (w² − u²)/(2·a·V) = (g(w) − g(u))/a` with `g(u) = u − u²/2V`. By `1/a` the cost of
+/// what begins at a level is a line, and the best level is on the lower envelope of all.
+#[derive(Debug, Clone, Copy)]
+struct Foot {
+    level: usize,
+    cost_s: f64,
+    /// `g(u)`.
+    gained_mm_s: f64,
+}
+
+impl Foot {
+    /// What it costs, but for what depends on the stage's top alone, s.
+    fn cost_s(&self, per_accel: f64) -> f64 {
+        self.cost_s - self.gained_mm_s * per_accel
+    }
+
+    /// Whether it is above the envelope of the one before it and the one after it.
+    fn is_above(&self, before: &Self, after: &Self) -> bool {
+        let [own, next] = [self, after].map(|it| {
+            (
+                it.cost_s - before.cost_s,
+                it.gained_mm_s - before.gained_mm_s,
+            )
+        });
+        next.0 * own.1 <= own.0 * next.1
+    }
+}
+
+/// The levels at which stages may begin, by speed, as far as one of them may yet be the best.
+#[derive(Debug, Default)]
+struct Envelope {
+    feet: Vec<Foot>,
+    /// The best for the last acceleration: those before it are not for lower ones.
+    best: usize,
+}
+
+impl Envelope {
+    fn push(&mut self, foot: Foot) {
+        while let [.., before, last] = self.feet[self.best..]
+            && last.is_above(&before, &foot)
+        {
+            self.feet.pop();
+        }
+        self.feet.push(foot);
+    }
+
+    /// The best for an acceleration that is no higher than at the last time.
+    fn best(&mut self, per_accel: f64) -> Option<Foot> {
+        while let [own, next, ..] = self.feet.get(self.best..)?
+            && next.cost_s(per_accel) < own.cost_s(per_accel)
+        {
+            self.best += 1;
+        }
+        self.feet.get(self.best).copied()
+    }
+}
+
+impl Terms {
+    /// Whether a stage is long enough.
+    fn permit(&self, [low, top]: [f64; 2], accel_mm_s2: f64) -> bool {
+        let lasts_s = (top - low) / accel_mm_s2;
+        let length_mm = 0.5 * (top + low) * lasts_s;
+        let at_speed_mm = (self.at_foot_s * low).max(self.at_top_s * top);
+        lasts_s >= self.shortest_s
+            && length_mm >= self.shortest_mm.max(at_speed_mm)
+            && top >= self.ratio * low
+    }
+}
+
 /// The stages between two speeds, mm/s; none where they are one. `None` where no stage is
-/// long enough. A lower ramp read backwards is a way to brake.
+/// long enough. A lower ramp read backwards is a way to brake. At higher speeds no more
+/// acceleration is taken than at lower ones.
 pub(super) fn stages(
     low_mm_s: f64,
     top_mm_s: f64,
@@ -56,41 +129,42 @@ pub(super) fn stages(
         return Some(Stages::default());
     }
     let speed = |level: usize| low_mm_s + (top_mm_s - low_mm_s) * level as f64 / LEVELS as f64;
+    let gained = |speed_mm_s: f64| speed_mm_s * (1.0 - 0.5 * speed_mm_s / top_mm_s);
     let mut ways: Vec<Option<Way>> = Vec::with_capacity(LEVELS + 1);
     ways.push(Some(Way {
         cost_s: 0.0,
         length_mm: 0.0,
         from: 0,
     }));
-    // Stages to higher levels begin no lower.
-    let mut lowest = 0;
+    let mut envelope = Envelope::default();
+    let (mut next, mut accel) = (0, f64::INFINITY);
     for level in 1..=LEVELS {
         let top = speed(level);
-        let accel = accel_mm_s2(top);
-        let mut best: Option<Way> = None;
-        for (from, way) in ways.iter().enumerate().skip(lowest) {
-            let Some(way) = way else { continue };
-            let low = speed(from);
-            let lasts_s = (top - low) / accel;
-            let length_mm = 0.5 * (top + low) * lasts_s;
-            let at_speed_mm = (terms.at_foot_s * low).max(terms.at_top_s * top);
-            let shortest_mm = terms.shortest_mm.max(at_speed_mm);
-            let long = lasts_s >= terms.shortest_s && length_mm >= shortest_mm;
-            if !long || top < terms.ratio * low {
-                // Stages from higher levels are shorter still.
-                break;
-            }
-            let cost_s = way.cost_s + lasts_s - length_mm / top_mm_s + terms.price_s;
-            if best.is_none_or(|best| cost_s < best.cost_s) {
-                best = Some(Way {
-                    cost_s,
-                    length_mm: way.length_mm + length_mm,
-                    from,
+        accel = accel.min(accel_mm_s2(top));
+        // What is long enough for one level is for all higher ones, and stages from higher
+        // levels are shorter.
+        while let Some(way) = ways.get(next) {
+            if let Some(way) = way {
+                if !terms.permit([speed(next), top], accel) {
+                    break;
+                }
+                envelope.push(Foot {
+                    level: next,
+                    cost_s: way.cost_s,
+                    gained_mm_s: gained(speed(next)),
                 });
             }
+            next += 1;
         }
-        lowest = best.map_or(lowest, |best| best.from);
-        ways.push(best);
+        ways.push(envelope.best(accel.recip()).and_then(|foot| {
+            let way = ways.get(foot.level).copied().flatten()?;
+            let low = speed(foot.level);
+            Some(Way {
+                cost_s: foot.cost_s(accel.recip()) + gained(top) / accel + terms.price_s,
+                length_mm: way.length_mm + 0.5 * (top + low) * (top - low) / accel,
+                from: foot.level,
+            })
+        }));
     }
     let mut tops_mm_s = Vec::new();
     let mut level = LEVELS;
@@ -108,7 +182,7 @@ pub(super) fn stages(
 
 #[cfg(test)]
 mod tests {
-    use super::{Terms, stages};
+    use super::{LEVELS, Terms, stages};
 
     const TERMS: Terms = Terms {
         shortest_s: 0.001,
@@ -206,5 +280,80 @@ mod tests {
         });
         assert!(few.len() > 3, "{few:?}");
         assert!(few.iter().all(|(low, top)| *top >= 1.1 * low), "{few:?}");
+    }
+
+    /// What a ramp with stages between these speeds loses against its last one, with the price
+    /// of each.
+    fn cost_s(tops: &[f64], accel: impl Fn(f64) -> f64, price_s: f64) -> f64 {
+        let most = *tops.last().unwrap();
+        let mut low = 0.0;
+        let mut cost = 0.0;
+        for top in tops {
+            let lasts = (top - low) / accel(*top);
+            cost += lasts - 0.5 * (top + low) * lasts / most + price_s;
+            low = *top;
+        }
+        cost
+    }
+
+    /// The least cost of all choices of levels, each tried.
+    fn least_cost_s(accel: impl Fn(f64) -> f64, terms: Terms) -> f64 {
+        let speed = |level: usize| 500.0 * level as f64 / LEVELS as f64;
+        let mut costs = vec![0.0];
+        for level in 1..=LEVELS {
+            let top = speed(level);
+            let a = accel(top);
+            let from = |(from, before): (usize, &f64)| {
+                let low = speed(from);
+                let lasts = (top - low) / a;
+                let length = 0.5 * (top + low) * lasts;
+                let at_speed = (terms.at_foot_s * low).max(terms.at_top_s * top);
+                let long = lasts >= terms.shortest_s && length >= terms.shortest_mm.max(at_speed);
+                let cost = before + lasts - length / 500.0 + terms.price_s;
+                if long && top >= terms.ratio * low {
+                    cost
+                } else {
+                    f64::INFINITY
+                }
+            };
+            costs.push(
+                costs
+                    .iter()
+                    .enumerate()
+                    .map(from)
+                    .fold(f64::INFINITY, f64::min),
+            );
+        }
+        costs[LEVELS]
+    }
+
+    /// Random powers, friction and terms: nothing is better than what is found.
+    #[test]
+    fn no_other_stages_lose_less() {
+        let mut seed = 1_u64;
+        let mut next = move |least: f64, most: f64| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            least + (most - least) * (seed >> 33) as f64 / f64::from(1_u32 << 31)
+        };
+        for _ in 0..200 {
+            let (power, force, friction) = (next(5e4, 2e6), next(2e3, 2e4), next(0.0, 50.0));
+            let accel = |speed: f64| (power / speed).min(force) - friction;
+            let terms = Terms {
+                shortest_s: next(1e-3, 2e-2),
+                shortest_mm: next(0.0, 0.5),
+                at_foot_s: next(0.0, 0.01),
+                at_top_s: next(0.0, 0.01),
+                ratio: next(1.0, 1.05),
+                price_s: next(1e-6, 1e-3),
+            };
+            let least = least_cost_s(accel, terms);
+            match stages(0.0, 500.0, accel, terms) {
+                Some(found) => {
+                    let cost = cost_s(&found.tops_mm_s, accel, terms.price_s);
+                    assert!((cost - least).abs() < 1e-9, "{cost} {least} {terms:?}");
+                }
+                None => assert!(least.is_infinite(), "{least} {terms:?}"),
+            }
+        }
     }
 }
