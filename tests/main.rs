@@ -72,6 +72,7 @@ mod borrowed;
 mod circles;
 mod html;
 mod lathe_cycles;
+mod relatives;
 mod repeated;
 mod strayed;
 mod effort;

@@ -5,7 +5,7 @@ use super::executor::Line;
 use super::line_key::LineKey;
 use super::untouched::{
     BEAM_IS_LIT, COMPENSATED, FEED_MODE, FEEDS_ARE_ROUNDED, MACHINE_COORDINATES, NO_FEED,
-    PER_REVOLUTION, REFERENCE, UNKNOWN_FEED, WITHOUT_STOP, help,
+    PER_REVOLUTION, RAPIDS_MAY_BE_SLOWER, REFERENCE, UNKNOWN_FEED, WITHOUT_STOP, help,
 };
 use crate::interpret::{
     FEED_MODE_UNKNOWN, Facts, FastPathState, FeedMode, KnobState, Motion, Move, MoveKind, Step,
@@ -350,7 +350,7 @@ impl Entry {
     }
 
     /// What forbids G1 for G0; `stays`: it ends at rest as a feed too.
-    fn stays_rapid(&self, machine: &Machine, stays: bool) -> [(bool, &'static str); 8] {
+    fn stays_rapid(&self, machine: &Machine, stays: bool) -> [(bool, &'static str); 9] {
         let facts = &self.facts;
         let family = machine.controller.language.family.facts();
         [
@@ -360,6 +360,7 @@ impl Entry {
             ),
             (facts.beam_is_lit, BEAM_IS_LIT),
             (facts.feeds_are_rounded, FEEDS_ARE_ROUNDED),
+            (facts.rapids_may_be_slower, RAPIDS_MAY_BE_SLOWER),
             (facts.reference.is_some(), REFERENCE),
             (
                 self.works_out_motion(),

@@ -19,9 +19,10 @@ use super::rounds::{Job, Rounds, restart};
 use super::row::Detail;
 use super::source::{Source, Target};
 use super::stops;
-use super::strategy::{check_strategy, trusting};
+use super::strategy::check_strategy;
 use super::unmarked::unmarked;
 use super::ways::{has_ways, ways};
+use super::word_choice::with_words;
 use super::writer::Plan;
 use super::{Failure, LimitOptions, LimitSummary, Options, Restart, RestartRows, Summary};
 use crate::diagnostic::{Diagnostic, Severity};
@@ -84,11 +85,38 @@ fn limit_as_wanted(
     machine: &Machine,
     options: &Options,
     wanted: Wanted,
+    mut output: &mut dyn Target,
+    rows: &mut Option<&mut dyn RestartRows>,
+) -> Result<LimitSummary, Failure> {
+    let mut begun = false;
+    let mut run = |machine: &Machine, how: LimitOptions| {
+        if std::mem::replace(&mut begun, true) {
+            input.rewind().map_err(Failure::Input)?;
+            restart(&mut output, rows)?;
+        }
+        limit_once(
+            input,
+            machine,
+            options,
+            Wanted { how, ..wanted },
+            output,
+            rows,
+        )
+    };
+    with_words(machine, wanted.how, wanted.rounds == Rounds::All, &mut run)
+}
+
+/// The same with the machine's words as they are.
+fn limit_once(
+    input: &mut dyn Source,
+    machine: &Machine,
+    options: &Options,
+    wanted: Wanted,
     output: &mut dyn Target,
     rows: &mut Option<&mut dyn RestartRows>,
 ) -> Result<LimitSummary, Failure> {
-    if let Some((machine, note)) = trusting(machine, wanted.how).or_else(|| readable(machine)) {
-        let mut summary = limit_as_wanted(input, &machine, options, wanted, output, rows)?;
+    if let Some((machine, note)) = readable(machine) {
+        let mut summary = limit_once(input, &machine, options, wanted, output, rows)?;
         summary.before.notes.push(note);
         return Ok(summary);
     }

@@ -60,6 +60,7 @@ mod untouched;
 mod watching;
 mod ways;
 mod within;
+mod word_choice;
 mod looped_program;
 mod worst;
 mod writer;

@@ -7,6 +7,8 @@ use crate::motion::{CYCLE, TURNING_CYCLE};
 
 /// Why a rapid is not written as a feed, where the program can help.
 pub(super) const FEEDS_ARE_ROUNDED: &str = "ADIS rounds corners of feeds more than ADISPOS those of rapids: as a feed it would leave its path";
+pub(super) const RAPIDS_MAY_BE_SLOWER: &str =
+    "OVRRAP may hold the rapid to less than it counts: as a feed it would be faster";
 pub(super) const BEAM_IS_LIT: &str = "the laser is on: it is off in G0 and would burn along a feed";
 pub(super) const FEED_MODE: &str = "neither G94 nor G95 says what F means";
 pub(super) const PER_REVOLUTION: &str = "the feed in force is per revolution";
@@ -53,6 +55,10 @@ pub(super) fn help(machine: &Machine, facts: &Facts, reason: &str) -> &'static s
         }
         FEEDS_ARE_ROUNDED => {
             "write ADISPOS no smaller than ADIS before it, or G64, or an exact stop (G60)"
+        }
+        RAPIDS_MAY_BE_SLOWER => {
+            "write OVRRAP=100 before it; or say in the profile that the word acts as it reads, by \
+             `verified = true` of its knob"
         }
         FEED_MODE => {
             "write G94 or G95 before it; or say with which of them the machine begins: feed = \

@@ -197,6 +197,9 @@ fn verdict(overlay: &Overlay) -> String {
         Agreement::RunsOtherwise => {
             "times differ along the program: record at 100 % override, without waits for the operator"
         }
+        Agreement::AnotherUnit => {
+            "measured and predicted differ more than tenfold: say the unit of the log's column, as in power_kw, and check the masses"
+        }
         Agreement::AnotherProgram => "the log does not go up and down as this program would",
     };
     format!("{}: {why}", overlay.agreement().name())

@@ -242,6 +242,21 @@ fn rapids_stay_where_feeds_are_rounded_more() {
     assert_eq!(written("G641"), (0, false));
 }
 
+/// OVRRAP acts on rapids alone: where it is not known to act, they are counted at their full
+/// speed, and a feed in place of one might be faster.
+#[test]
+fn rapids_stay_where_they_may_be_slower_than_they_count() {
+    let shop = Shop::straight("siemens", 400.0);
+    let written = |head: &str| {
+        shop.put("a.mpf", &format!("{head}\nG0 X400 Y300\nY0\nM30\n"));
+        let (code, _, errors) = shop.run("limit a.mpf -o out.mpf");
+        (code, errors.contains("as a feed it would be faster"))
+    };
+    assert_eq!(written("OVRRAP=50"), (1, true));
+    assert_eq!(written("OVRRAP=50\nG1 X1 F100\nOVRRAP=100"), (0, false));
+    assert_eq!(written("OVRRAP=100"), (0, false));
+}
+
 /// Where words stand without blanks, a word that is added after a name gets one.
 #[test]
 fn a_feed_after_a_variable_is_no_part_of_its_name() {

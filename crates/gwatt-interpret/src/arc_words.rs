@@ -134,7 +134,11 @@ impl Control<'_> {
                     .help("choose the plane with G17, G18 or G19");
             }
         }
-        let turns = run.words.take(b'P').unwrap_or(1.0);
+        let turns = if self.rules.arc_turns {
+            run.words.take(b'P').unwrap_or(1.0)
+        } else {
+            1.0
+        };
         if turns < 1.0 || turns.fract() != 0.0 || turns > 1e6 {
             let span = run.words.span(b'P', run.block);
             let message = "P of an arc must be a whole number from 1";

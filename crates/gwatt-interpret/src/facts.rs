@@ -58,6 +58,9 @@ pub struct Facts {
     pub beam_is_lit: bool,
     /// Corners of feeds are rounded where those of rapids are not.
     pub feeds_are_rounded: bool,
+    /// Rapids may be slower than they are counted: the program lowers them by a word of which it
+    /// is not known how it acts.
+    pub rapids_may_be_slower: bool,
     /// It homes the axes at a speed of the control's own, under the limits in force.
     pub homes: bool,
     /// The block carries a checksum.

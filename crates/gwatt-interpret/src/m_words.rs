@@ -119,7 +119,9 @@ impl Control<'_> {
             let value = f64::from(number) / 10.0;
             self.switch_loads(value);
             self.switches.switch(number);
-            self.osp_return(number);
+            if self.rules.cycle_levels_by_m && self.osp_m_word(number, span, run) {
+                continue;
+            }
             run.facts.announces_tap |= number == RIGID && self.motion_survives_cycles();
             if self.moves_of_itself(b'M', number) {
                 if number == 60 {

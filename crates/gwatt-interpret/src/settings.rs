@@ -6,9 +6,12 @@ use super::control::{Control, Run};
 use super::feed_expression::expression_of;
 use super::g_codes::path_mode;
 use super::modal::{Feed, NumberText};
-use gwatt_machine::PathMode;
+use gwatt_machine::{PathMode, Point};
 use gwatt_motion::{ActionKind, Corner, FeedMode};
 use gwatt_syntax::source::Span;
+
+/// Seconds in a least increment of the time of a dwell.
+const LEAST_S: f64 = 1e-3;
 
 impl Control<'_> {
     pub(super) fn feed_mode(&mut self, run: &mut Run<'_, '_>) {
@@ -220,7 +223,8 @@ impl Control<'_> {
             let dialect = &language.dialect;
             let own = dialect.dwell_whole.iter().find(|(name, _)| name == letter);
             let unit = own.filter(|_| whole).map_or(*unit, |(_, unit)| *unit);
-            seconds = Some(value * unit);
+            let fine = whole && matches!(letter, b'X' | b'U') && self.counts_least(span, run);
+            seconds = Some(value * if fine { unit * LEAST_S } else { unit });
         }
         match seconds {
             Some(time) if (0.0..=1e9).contains(&time) => return seconds,
@@ -247,6 +251,24 @@ impl Control<'_> {
             }
         }
         None
+    }
+
+    /// Whether a time that is written as a length, without a point, counts milliseconds as that
+    /// would count least increments (B-63944EN, "Dwell (G04)"). Where it is not known how numbers
+    /// without a point count, the shorter time does.
+    fn counts_least(&self, span: Span, run: &mut Run<'_, '_>) -> bool {
+        let dialect = self.dialect();
+        match dialect.point {
+            Some(Point::LeastIncrement) => true,
+            Some(Point::Calculator) if !dialect.point_is_known => {
+                let message = "the time of a dwell without a decimal point is counted in \
+                               milliseconds, the shorter of two; write decimal_point under \
+                               [language] in the machine file, or the time with a point";
+                run.report.note_once("dwell-unit", message, span);
+                true
+            }
+            _ => false,
+        }
     }
 
     /// True when F counts for the motion in force.

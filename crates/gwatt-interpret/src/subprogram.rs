@@ -61,6 +61,10 @@ impl Control<'_> {
                 .help("write M98 and M99 in blocks of their own");
             return true;
         }
+        // On other controls it ends the interrupt of M96.
+        if number == 970 && !self.dialect().m97_calls {
+            return false;
+        }
         match (macros, number) {
             // M198 calls a program that stands in another memory.
             (Macros::OWords | Macros::MacroB, 980) | (Macros::MacroB, 970 | 1980) => {

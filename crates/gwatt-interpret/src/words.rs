@@ -108,7 +108,7 @@ impl Words {
                     } else if word.letter == b'G' {
                         self.add_g(*word, controller, report);
                     } else {
-                        self.add_m(*word, report);
+                        self.add_m(*word, controller, report);
                     }
                 }
                 b'A'..=b'Z' => self.add(index, word, report),
@@ -266,8 +266,8 @@ impl Words {
         true
     }
 
-    fn add_m(&mut self, word: Word, report: &mut Report<'_, '_>) {
-        let Some(number) = code_number(word.value) else {
+    fn add_m(&mut self, word: Word, controller: &Controller, report: &mut Report<'_, '_>) {
+        let Some(mut number) = code_number(word.value) else {
             report.error(
                 "unknown-code",
                 format!("M{} is not a valid word", word.value),
@@ -275,6 +275,9 @@ impl Words {
             );
             return;
         };
+        if number == 160 && controller.language.dialect.m16_changes_tool {
+            number = 60;
+        }
         if self.m.try_push((number, word.span)).is_err() {
             report.error(
                 "too-many-words",

@@ -207,6 +207,10 @@ pub struct Dialect {
     pub inverse_angles: InverseAngles,
     /// The machine file says so.
     pub inverse_angles_are_known: bool,
+    /// M97 P calls a block of the same program.
+    pub m97_calls: bool,
+    /// M16 changes the tool as M6 does.
+    pub m16_changes_tool: bool,
     /// G12 and G13 mill circular pockets.
     pub circular_pocket: bool,
     /// G81 to G89 of a lathe all drill along Z, from the place R.

@@ -17,7 +17,12 @@ const UNPACK: &str = "unpack it first";
 const PROGRAM: &str = "give a part program";
 
 /// How files begin that are no programs of words.
-const BEGINNINGS: [(&[u8], &str, &str); 27] = [
+const BEGINNINGS: [(&[u8], &str, &str); 28] = [
+    (
+        b"%@MACRO",
+        "a macro of a Syntec control, whose numbers and variables are not those of ISO programs",
+        "give the moves that it makes as an ISO program",
+    ),
     (
         b"GCDE",
         "binary G-code",

@@ -54,6 +54,8 @@ pub(super) fn series(line: &Line<'_, '_>, before: &Before, machine: &Machine) ->
         Err("the laser is on: it would burn along a feed")
     } else if facts.feeds_are_rounded {
         Err("corners of feeds are rounded more than those of rapids")
+    } else if facts.rapids_may_be_slower {
+        Err("OVRRAP may hold rapids to less than they count")
     } else if let Some(point) = unknown_point {
         Err(not_known(point, machine))
     } else if let Some(why) = line.interpreter.unsure_of_places(moving) {

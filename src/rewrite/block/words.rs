@@ -28,10 +28,12 @@ impl Rewriter<'_> {
         if !facts.uses_motion {
             return;
         }
-        let wanted = if view.change.as_feed {
-            Motion::Linear
-        } else {
-            view.after.motion
+        // An end of the program may put another word in force after the motion.
+        let ends = own.is_none() && facts.stop_word.is_some();
+        let wanted = match (view.change.as_feed, ends) {
+            (true, _) => Motion::Linear,
+            (_, true) => view.before.motion,
+            _ => view.after.motion,
         };
         if wanted == self.written.motion {
             return;

@@ -458,8 +458,7 @@ mod tests {
         );
     }
 
-    /// After dense samples one that is a year later: there is no memory for windows as narrow as
-    /// their steps.
+    /// After dense samples one that is a year later: windows are not as narrow as their steps.
     #[test]
     fn samples_may_lie_unevenly() {
         let curve = program(10, 12);
@@ -471,7 +470,13 @@ mod tests {
     }
 
     #[test]
-    fn another_program_is_not_good() {
+    fn another_program_or_unit_is_not_good() {
+        for gain in [1e-3, 1e3] {
+            let mut log = log(&program(8, 40), 0.002, (1.0, 1.0, 1.0), 1.0);
+            log.power_w.iter_mut().for_each(|it| *it *= gain);
+            let found = overlay(&program(8, 40), &[], &log);
+            assert_eq!(found.unwrap().agreement(), Agreement::AnotherUnit);
+        }
         let log = log(&program(8, 40), 0.01, (1.0, 1.0, 1.0), 1.0);
         let found = overlay(&program(9, 40), &[], &log).unwrap();
         assert_eq!(

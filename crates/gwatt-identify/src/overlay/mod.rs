@@ -26,9 +26,12 @@ use align::align;
 use meter::{INSTANT, correlation, shown};
 use refined::refined;
 use tops::Model;
+use std::ops::RangeInclusive;
 
 /// Correlation from which on the log is that of the program.
 const SAME: f64 = 0.7;
+/// How many times the prediction a measured power may be, of the program in the same unit.
+const UNITS: RangeInclusive<f64> = 0.1..=10.0;
 /// Correlation from which on both go together in time.
 const TOGETHER: f64 = 0.9;
 
@@ -81,6 +84,8 @@ pub enum Agreement {
     SampledSlowly,
     /// The program does not run as planned: feeds, overrides or waits differ along it.
     RunsOtherwise,
+    /// Both go together, and one is many times the other.
+    AnotherUnit,
     /// The log is not that of this program.
     AnotherProgram,
 }
@@ -93,6 +98,7 @@ impl Agreement {
             Self::Good => "good",
             Self::SampledSlowly => "sampled too slowly for peaks",
             Self::RunsOtherwise => "runs otherwise",
+            Self::AnotherUnit => "another unit",
             Self::AnotherProgram => "another program",
         }
     }
@@ -109,6 +115,7 @@ impl Overlay {
     #[must_use]
     pub fn agreement(&self) -> Agreement {
         match self.correlation {
+            r if r >= SAME && !UNITS.contains(&self.gain) => Agreement::AnotherUnit,
             r if r >= TOGETHER && self.is_sampled_slowly => Agreement::SampledSlowly,
             r if r >= TOGETHER => Agreement::Good,
             r if r >= SAME => Agreement::RunsOtherwise,

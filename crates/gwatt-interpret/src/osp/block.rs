@@ -3,7 +3,7 @@
 use super::Osp;
 use crate::control::Control;
 use crate::expression::Fault;
-use crate::expression::{Cursor, Grammar, Lexis, Outcome, Uses};
+use crate::expression::{Cursor, Grammar, Ident, Lexis, Outcome, Uses};
 use crate::jump::Go;
 use crate::macro_block::{Note, not_finite};
 use crate::own_state::OwnState;
@@ -18,6 +18,9 @@ pub(super) struct Reading<'c, 't> {
     pub(super) uses: Uses,
     /// NOEX stands in the block.
     pub(super) passive: bool,
+    /// The first of the addresses of two letters that is given a value, and where.
+    pub(super) reserved: Option<(Ident, usize)>,
+    pub(super) lathe: bool,
 }
 
 impl Control<'_> {
@@ -35,6 +38,8 @@ impl Control<'_> {
             notes: Vec::new(),
             uses: Uses::default(),
             passive: false,
+            reserved: None,
+            lathe: self.machine.controller.language.dialect.diameter,
         };
         let read = reading.read(block);
         let notes = reading.notes;
@@ -56,6 +61,8 @@ impl Control<'_> {
             notes: Vec::new(),
             uses: Uses::default(),
             passive: false,
+            reserved: None,
+            lathe: false,
         };
         reading.whole()
     }
@@ -71,8 +78,7 @@ impl Reading<'_, '_> {
         block.words.clear();
         block.issues.clear();
         if self.cursor.peek() == Some(b'$') {
-            // `$NAME.MIN%`: the header of the file.
-            return Ok(None);
+            return self.header();
         }
         if self.cursor.take(b'/') {
             self.cursor.digits();
@@ -102,6 +108,13 @@ impl Reading<'_, '_> {
             }
             block.words_end = self.cursor.end() as u32;
         }
+        if let Some((name, start)) = self.reserved.take()
+            && (self.lathe || !block.words.is_empty())
+        {
+            let message = format!("{name}, an address of two letters, which is not followed");
+            let help = "write what it does in single words";
+            return Err(self.cursor.fault("unsupported-word", message, help, start));
+        }
         let moves = |word: &&Word| word.letter == b'G' && word.value < 4.0;
         if self.state.only_keeps
             && let Some(word) = block.words.iter().find(moves)
@@ -118,6 +131,20 @@ impl Reading<'_, '_> {
             return Err(Fault::new("unsupported-word", message, help, word.span));
         }
         Ok(go)
+    }
+
+    /// `$NAME.MIN%`: the header of the file. Other lines with a dollar sign belong to the block
+    /// before them.
+    fn header(&self) -> Outcome<Option<Go>> {
+        let is_header = self.cursor.text.trim_ascii_end().ends_with(b"%");
+        if is_header {
+            return Ok(None);
+        }
+        let message = "a line that begins with $ belongs to the block before it, which is not \
+                       followed";
+        let help = "write the block in one line";
+        let start = self.cursor.at;
+        Err(self.cursor.fault("unsupported-word", message, help, start))
     }
 
     fn assigns(&self, name: &str) -> bool {

@@ -13,6 +13,18 @@ const PASSIVE: [&str; 9] = [
 const TOOL_SPINDLE: &str = "what the tool's own spindle (SB) draws is not counted; feeds per \
      revolution count at the faster of both spindles";
 
+/// Whether an address of two letters of some model has this name ("Extended address
+/// characters"): places of a second saddle, chamfers, turns, offsets.
+fn is_reserved(name: &str) -> bool {
+    const OTHERS: [&str; 12] = [
+        "BC", "BR", "QA", "CL", "CP", "CQ", "CR", "SX", "SY", "SZ", "TL", "TD",
+    ];
+    match name.as_bytes() {
+        [first, b'A' | b'B'] if b"ADFIKLRSTUWXZ".contains(first) => true,
+        _ => OTHERS.contains(&name) || name == "TS",
+    }
+}
+
 /// What a name stands for.
 enum Name {
     Common(Ident),
@@ -122,6 +134,11 @@ impl Reading<'_, '_> {
             let message = "FA, the feed of the way out of a bore, which is not followed";
             let help = "write the cycle out as single blocks";
             return Err(self.cursor.fault("unsupported-word", message, help, start));
+        }
+        if let Name::Local(name) = &name
+            && is_reserved(name)
+        {
+            self.reserved.get_or_insert((name.clone(), start));
         }
         let (text, local) = match name {
             Name::Common(name) => (name, false),

@@ -51,6 +51,7 @@ pub(crate) const RULES: LanguageRules = LanguageRules {
     whole_cycle_dwell_s: 1e-3,
     cycles: CycleWords::Fanuc,
     turns_tilt_arcs: false,
+    arc_turns: false,
     stray_centres: false,
     radius_word: "R",
 };

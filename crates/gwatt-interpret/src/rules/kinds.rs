@@ -95,6 +95,8 @@ pub(crate) struct LanguageRules {
     pub whole_cycle_dwell_s: f64,
     /// G10 L2 R tilts arcs out of their plane.
     pub turns_tilt_arcs: bool,
+    /// P of an arc is how many turns it begins.
+    pub arc_turns: bool,
     /// I, J or K outside of the plane of an arc is passed over.
     pub stray_centres: bool,
     /// The word for the radius of an arc.

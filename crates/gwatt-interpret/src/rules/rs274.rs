@@ -15,6 +15,7 @@ pub(crate) const RULES: LanguageRules = LanguageRules {
         number.is_multiple_of(10) && matches!(number, 190 | 480..=530 | 610..=680 | 700..=730)
     },
     polar_words: true,
+    arc_turns: true,
     comments_act: true,
     macros: Macros::OWords,
     kept: KeptVariables::NumbersAndNames,

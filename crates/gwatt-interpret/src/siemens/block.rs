@@ -94,6 +94,7 @@ impl Control<'_> {
             || state.rounds.is_some()
             || state.limits.are_due()
             || state.smoothing.rounds_feeds_more()
+            || state.limits.rapids_may_be_slower
             || matches!(self.modal.motion, Motion::None | Motion::Special(_));
         if let Some(shift) = shift {
             self.position.set_shifts(&shift);
@@ -176,6 +177,7 @@ impl Control<'_> {
             self.settle_limits(&mut state.limits);
         }
         run.facts.feeds_are_rounded |= state.smoothing.rounds_feeds_more();
+        run.facts.rapids_may_be_slower |= state.limits.rapids_may_be_slower;
         self.modal.path_mode = mode;
         if state.extra.blends {
             self.choose_path_mode(PathMode::LookAhead);

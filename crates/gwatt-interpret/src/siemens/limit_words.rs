@@ -36,7 +36,7 @@ const VOUCHED: [(&str, &str); 3] = [
 ];
 
 impl Reading<'_, '_, '_> {
-    /// `ACC[X]=50`, `OVRRAP=70` and their kin; the name has been taken.
+    /// `ACC[X]=50`, `OVRRAP=70` and similar words; the name has been taken.
     pub(super) fn limit(&mut self, name: &str, start: usize) -> Outcome<()> {
         let axis = if self.cursor.peek() == Some(b'[') {
             self.limited_axis()?
@@ -66,6 +66,9 @@ impl Reading<'_, '_, '_> {
             percent
         };
         let limits = &mut self.state.limits;
+        if name == "OVRRAP" {
+            limits.rapids_may_be_slower = counted > percent;
+        }
         let limit = match (name, axis) {
             ("ACC", Some(axis)) => Some(&mut limits.accel[axis]),
             ("VELOLIM", Some(axis)) => Some(&mut limits.speed[axis]),

@@ -14,6 +14,8 @@ pub(super) struct Limits {
     pub(super) brisk: bool,
     /// OVRRAP, in percent.
     pub(super) rapid: f64,
+    /// OVRRAP is lower than it counts.
+    pub(super) rapids_may_be_slower: bool,
     /// Something lower does not act yet, since blocks before it are held back.
     pub(super) due: bool,
 }
@@ -26,6 +28,7 @@ impl Limits {
             jerk: [100.0; AXES],
             brisk: false,
             rapid: 100.0,
+            rapids_may_be_slower: false,
             due: false,
         }
     }

@@ -155,6 +155,10 @@ pub(crate) struct LanguageTable {
     pub(crate) spindle_before_motion: Option<bool>,
     /// The axes that M6 sends to their reference points by itself; default: not known.
     pub(crate) tool_change_moves: Option<Vec<At<String>>>,
+    /// M97 P calls a block of the same program, as on a Haas; default false.
+    pub(crate) m97_calls: Option<bool>,
+    /// M16 changes the tool as M6 does, as on a Haas; default false.
+    pub(crate) m16_changes_tool: Option<bool>,
     /// G12 and G13 mill circular pockets, as on a Haas; default false.
     pub(crate) circular_pocket: Option<bool>,
     /// Whether G81 to G89 of a lathe all drill along Z, from the place R, as on a Haas; default

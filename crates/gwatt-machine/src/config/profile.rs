@@ -158,6 +158,8 @@ fn dialect(table: &LanguageTable) -> Dialect {
         per_revolution: table.feed.map(|feed| feed == FeedName::PerRevolution),
         inverse_angles: table.inverse_angles.unwrap_or_default(),
         inverse_angles_are_known: false,
+        m97_calls: table.m97_calls.unwrap_or(false),
+        m16_changes_tool: table.m16_changes_tool.unwrap_or(false),
         circular_pocket: table.circular_pocket.unwrap_or(false),
         holes_along_z: table.holes_along_z.unwrap_or(false),
         bores_by_hand: table.bores_by_hand.unwrap_or(false),

@@ -5,6 +5,7 @@ use crate::offsets::{FURTHER, FURTHER_MAX};
 use crate::osp::Return;
 use crate::osp::code::OspCode;
 use crate::own_state::OwnState;
+use gwatt_motion::ActionKind;
 use gwatt_syntax::source::Span;
 
 impl Control<'_> {
@@ -53,8 +54,39 @@ impl Control<'_> {
         }
     }
 
+    /// M52, M53 and M54 (number × 10), and what other controls mean otherwise. True where
+    /// nothing is left to do for the word.
+    pub(crate) fn osp_m_word(&mut self, number: u16, span: Span, run: &mut Run<'_, '_>) -> bool {
+        let lathe = self.dialect().diameter;
+        let (message, help) = match number {
+            // "M98/M99: Tailstock quill pressing with its low / high force".
+            980 | 990 if lathe && !run.block.words.iter().any(|word| word.letter == b'P') => {
+                run.act(ActionKind::Other, f64::from(number) / 10.0);
+                return true;
+            }
+            980 | 990 => (
+                "M98 and M99 are no calls of subprograms on this control",
+                "write CALL O… and RTS",
+            ),
+            // "C-axis positioning in positive / negative direction".
+            150 | 160 => (
+                "M15 and M16 choose the direction in which a rotary axis turns, which is not \
+                 followed",
+                "take the word out if the axis turns the short way, or write the way as G91",
+            ),
+            _ => {
+                self.osp_return(number);
+                return false;
+            }
+        };
+        run.report
+            .error("unsupported-word", message, span)
+            .help(help);
+        true
+    }
+
     /// M52, M53 and M54 (number × 10).
-    pub(crate) fn osp_return(&mut self, number: u16) {
+    fn osp_return(&mut self, number: u16) {
         if let OwnState::Osp(osp) = &mut self.own {
             osp.returns = match number {
                 520 => Some(Return::Limit),
