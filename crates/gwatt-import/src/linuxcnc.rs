@@ -7,6 +7,9 @@ mod changes;
 mod config;
 mod hal;
 mod kinematics_module;
+mod screen;
+mod start_up;
+mod version;
 
 use config::{Config, named};
 use kinematics_module::by_name;
@@ -68,7 +71,9 @@ pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
         axis(&config, &mut found, log, id, &joints);
     }
     trajectory(&config, &mut found, log);
-    start_up(&config, &mut found, log);
+    version::unread(&config, &mut found, log);
+    start_up::read(&config, &mut found, log);
+    screen::overrides(&config, &mut found, log);
     changes::tool_change(&config, &mut found, log);
     changes::remaps(&config, &mut found, log);
     corners(&config, &mut found, log);
@@ -201,7 +206,7 @@ fn axis(config: &Config<'_>, found: &mut Found, log: &mut Log, id: AxisId, joint
     let mut rapid = config.positive(log, &sections, "MAX_VELOCITY", unit * MIN);
     let accel = config.positive(log, &sections, "MAX_ACCELERATION", unit);
     // The path is never faster, and so is none of its axes.
-    let top = traj_velocity(config, log).filter(|_| !rotary);
+    let top = version::traj_velocity(config, log).filter(|_| !rotary);
     if let (Some(own), Some(top)) = (&rapid, top)
         && top.value < own.value
     {
@@ -242,15 +247,6 @@ fn axis(config: &Config<'_>, found: &mut Found, log: &mut Log, id: AxisId, joint
     to.motors = joints.len();
 }
 
-/// The largest speed along the path: before 2.8 that is `MAX_VELOCITY`, and the other one is
-/// the screen's.
-fn traj_velocity(config: &Config<'_>, log: &mut Log) -> Option<Figure> {
-    let traj = section("TRAJ");
-    let keys = ["MAX_LINEAR_VELOCITY", "MAX_VELOCITY"];
-    let found = keys.map(|key| config.positive(log, &traj, key, config.linear * MIN));
-    highest(found.into_iter().flatten())
-}
-
 fn trajectory(config: &Config<'_>, found: &mut Found, log: &mut Log) {
     let angular = config.positive(
         log,
@@ -260,7 +256,7 @@ fn trajectory(config: &Config<'_>, found: &mut Found, log: &mut Log) {
     );
     // Of moves of rotary axes alone the other limit holds; where it is not known, none is.
     let turns = found.axes.iter().flatten().any(|axis| axis.rotary);
-    let top = match (traj_velocity(config, log), angular) {
+    let top = match (version::traj_velocity(config, log), angular) {
         (Some(top), None) if !turns => Some(top),
         (Some(top), Some(angular)) if turns => highest([top, angular]),
         (Some(top), Some(_)) => Some(top),
@@ -296,63 +292,6 @@ fn trajectory(config: &Config<'_>, found: &mut Found, log: &mut Log) {
             format!("{key}, {what}, is not taken over"),
             help,
         );
-    }
-}
-
-/// `RS274NGC_STARTUP_CODE`: units, centres, tolerance.
-fn start_up(config: &Config<'_>, found: &mut Found, log: &mut Log) {
-    let item = ["RS274NGC_STARTUP_CODE", "STARTUP_CODE"]
-        .iter()
-        .find_map(|key| {
-            let own = last(&config.items, "RS274NGC", key);
-            own.or_else(|| last(&config.items, "EMC", key))
-        });
-    let code = item.map_or(String::new(), |it| it.value.to_ascii_uppercase());
-    let words: Vec<&str> = code.split_whitespace().collect();
-    let has = |word: &str| words.contains(&word);
-    let source = item.map_or(String::new(), |it| named(it));
-    let inch = has("G20") || (config.linear == INCH && !has("G21"));
-    if inch {
-        let units = last(&config.items, "TRAJ", "LINEAR_UNITS").map(|it| named(it));
-        let source = if has("G20") {
-            source.clone()
-        } else {
-            units.unwrap_or_default()
-        };
-        found.language("units = \"inch\"", source);
-    }
-    if has("G90.1") {
-        found.language("arc_centre = \"absolute\"", source.clone());
-    }
-    if let Some(at) = words.iter().position(|word| *word == "G64") {
-        let tolerance = words
-            .get(at + 1)
-            .and_then(|word| word.strip_prefix('P'))
-            .map(str::parse::<f64>);
-        let unit = if inch { INCH } else { 1.0 };
-        match (tolerance, item) {
-            (None, _) => found.language("power_on_tolerance_mm = 0", source),
-            (Some(Ok(value)), _) if value >= 0.0 => {
-                found.language(
-                    format!("power_on_tolerance_mm = {}", shown(value * unit)),
-                    source,
-                );
-            }
-            (_, Some(item)) => log.error(
-                &item.place,
-                "the tolerance of G64 cannot be read".to_owned(),
-                "write it as G64 P0.01",
-            ),
-            _ => {}
-        }
-    }
-    for word in ["G61", "G61.1"] {
-        if has(word) {
-            let note = format!(
-                "Start-up code {word}: programs count as in the mode that they select, else in G64"
-            );
-            found.remarks.push(note);
-        }
     }
 }
 

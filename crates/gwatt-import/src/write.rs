@@ -36,6 +36,9 @@ pub(crate) fn machine_file(found: &Found, files: &[String]) -> String {
         "margin = 0.1",
         "share of the peak power that is kept free",
     );
+    for entry in &found.limits {
+        line(&mut out, &entry.field, &entry.source);
+    }
     out
 }
 

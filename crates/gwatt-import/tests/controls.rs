@@ -207,7 +207,7 @@ fn linuxcnc_of_old() {
     controller = "linuxcnc"
     [converter]
     [path]
-    max_feed_mm_min = 6000       # [TRAJ] MAX_VELOCITY = 100 (line 4), the highest
+    max_feed_mm_min = 6000       # [TRAJ] MAX_VELOCITY = 100 (line 4)
     [axes.X]
     kind = "linear"
     rapid_mm_min = 3000          # [AXIS_0] MAX_VELOCITY = 50 (line 8)

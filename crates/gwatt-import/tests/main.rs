@@ -6,6 +6,7 @@ mod errors;
 mod firmware;
 mod kinematics;
 mod limits;
+mod linuxcnc;
 mod robust;
 mod whole;
 
