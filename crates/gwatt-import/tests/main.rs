@@ -7,6 +7,7 @@ mod firmware;
 mod kinematics;
 mod limits;
 mod linuxcnc;
+mod printers;
 mod robust;
 mod whole;
 
