@@ -11,7 +11,7 @@ mod screen;
 mod start_up;
 mod version;
 
-use config::{Config, named};
+use config::{Config, INCH, MIN, named, section};
 use kinematics_module::by_name;
 use std::path::Path;
 
@@ -30,17 +30,10 @@ const STYLE: Style = Style {
     inline: &['#', ';'],
 };
 
-const MIN: f64 = 60.0;
-const INCH: f64 = 25.4;
-
 /// The file that a line includes.
 pub(crate) fn include(line: &str) -> Option<&str> {
     let name = line.strip_prefix("#INCLUDE")?.trim();
     (!name.is_empty()).then_some(name)
-}
-
-fn section(name: &str) -> Vec<String> {
-    vec![name.to_owned()]
 }
 
 /// Reads the INI file; HAL files that it names are looked for next to it.

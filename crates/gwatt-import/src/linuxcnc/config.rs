@@ -5,6 +5,15 @@ use crate::found::Figure;
 use crate::ini::{Item, last};
 use crate::text::Log;
 
+/// Seconds of a minute, millimetres of an inch.
+pub(super) const MIN: f64 = 60.0;
+pub(super) const INCH: f64 = 25.4;
+
+/// A section alone, as [`Config::positive`] takes it.
+pub(super) fn section(name: &str) -> Vec<String> {
+    vec![name.to_owned()]
+}
+
 /// The values, and how many millimetres and degrees a unit of the machine has.
 pub(super) struct Config<'j> {
     pub(super) items: Vec<Item<'j>>,

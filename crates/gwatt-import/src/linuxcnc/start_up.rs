@@ -3,8 +3,7 @@
 //! Sources: LinuxCNC documentation, "INI Configuration", `[RS274NGC]`; "G-Code Overview" for how
 //! blocks are cut into words: blanks do not matter.
 
-use super::INCH;
-use super::config::{Config, named};
+use super::config::{Config, INCH, named};
 use crate::found::{Found, shown};
 use crate::ini::{Item, last};
 use crate::text::{Log, Place};

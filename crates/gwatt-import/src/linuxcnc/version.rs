@@ -3,8 +3,7 @@
 //! Source: LinuxCNC, `initraj.cc` and `update_ini.py`: from 2.8 on the largest speed of the path
 //! is `MAX_LINEAR_VELOCITY`, before it was `MAX_VELOCITY`.
 
-use super::config::{Config, named};
-use super::{MIN, section};
+use super::config::{Config, MIN, named, section};
 use crate::found::{Figure, Found, highest};
 use crate::ini::last;
 use crate::text::Log;
