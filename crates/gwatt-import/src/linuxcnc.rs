@@ -18,7 +18,7 @@ use std::path::Path;
 use gwatt_machine::AxisId;
 
 use crate::found::{Build, Figure, Found, entry, highest, shown};
-use crate::ini::{Item, Style, items, last};
+use crate::ini::{Item, Style, first, items};
 use crate::near::{Job, Near};
 use crate::text::{File, Log};
 use hal::Hal;
@@ -40,7 +40,7 @@ pub(crate) fn include(line: &str) -> Option<&str> {
 pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
     let items = items(job, STYLE);
     let mut found = Found::new("linuxcnc", "Machine under LinuxCNC", Build::Screws);
-    if let Some(name) = last(&items, "EMC", "MACHINE").filter(|it| !it.value.is_empty()) {
+    if let Some(name) = first(&items, "EMC", "MACHINE").filter(|it| !it.value.is_empty()) {
         name.value.clone_into(&mut found.name);
     }
     let scripts = hal_files(&items, job, near, log);
@@ -53,7 +53,7 @@ pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
         hal: Hal::new(scripts.iter().filter(|file| is_hal(&file.name)), log),
     };
     kinematics_of(&config, &mut found, log);
-    let named = last(&config.items, "KINS", "KINEMATICS");
+    let named = first(&config.items, "KINS", "KINEMATICS");
     let named = named.and_then(|it| it.value.split_whitespace().next());
     for module in hal::modules(&scripts) {
         if named != Some(module.name.as_str()) {
@@ -81,7 +81,7 @@ pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
 /// The files of HAL that are there. Where the INI file does not name the kinematics (up to
 /// 2.7, Machinekit), one that is missing may.
 fn hal_files(items: &[Item<'_>], job: &Job, near: &dyn Near, log: &mut Log) -> Vec<File> {
-    let named = last(items, "KINS", "KINEMATICS").is_some();
+    let named = first(items, "KINS", "KINEMATICS").is_some();
     let mut files = Vec::new();
     for item in items {
         let is_file = matches!(item.key.as_str(), "HALFILE" | "POSTGUI_HALFILE");
@@ -113,7 +113,7 @@ fn is_hal(name: &str) -> bool {
 
 /// Millimetres, or degrees, of a unit.
 fn units(items: &[Item<'_>], log: &mut Log, key: &str) -> f64 {
-    let Some(item) = last(items, "TRAJ", key) else {
+    let Some(item) = first(items, "TRAJ", key) else {
         return 1.0;
     };
     match item.value.to_ascii_lowercase().as_str() {
@@ -135,7 +135,7 @@ fn units(items: &[Item<'_>], log: &mut Log, key: &str) -> f64 {
 }
 
 fn kinematics_of(config: &Config<'_>, found: &mut Found, log: &mut Log) {
-    let Some(item) = last(&config.items, "KINS", "KINEMATICS") else {
+    let Some(item) = first(&config.items, "KINS", "KINEMATICS") else {
         return;
     };
     let name = item.value.split_whitespace().next().unwrap_or("");
@@ -144,13 +144,13 @@ fn kinematics_of(config: &Config<'_>, found: &mut Found, log: &mut Log) {
 
 /// The letters of the axes, each with its joints in the order of `coordinates=`.
 fn coordinates(config: &Config<'_>) -> Vec<(AxisId, Vec<usize>)> {
-    let kins = last(&config.items, "KINS", "KINEMATICS").and_then(|it| {
+    let kins = first(&config.items, "KINS", "KINEMATICS").and_then(|it| {
         let words = it.value.split_whitespace();
         words
             .rev()
             .find_map(|word| word.strip_prefix("coordinates="))
     });
-    let named = kins.or_else(|| last(&config.items, "TRAJ", "COORDINATES").map(|it| it.value));
+    let named = kins.or_else(|| first(&config.items, "TRAJ", "COORDINATES").map(|it| it.value));
     let mut axes: Vec<(AxisId, Vec<usize>)> = Vec::new();
     let letters = named
         .unwrap_or("XYZ")
@@ -270,7 +270,7 @@ fn trajectory(config: &Config<'_>, found: &mut Found, log: &mut Log) {
         ("MAX_LINEAR_JERK", "jerk along the path"),
     ];
     for (key, what) in left {
-        let Some(item) = last(&config.items, "TRAJ", key) else {
+        let Some(item) = first(&config.items, "TRAJ", key) else {
             continue;
         };
         if (key == "ARC_BLEND_ENABLE" && item.value == "1")

@@ -133,3 +133,14 @@ fn which_largest_speed_of_the_path_counts() {
     ");
     assert_snapshot!(of("JOINT_0]\nHOME = 0\n[AXIS_0", "MAX_VELOCITY = 20\nMAX_LINEAR_VELOCITY = 30\n"), @r"rapid_mm_min = 1800          # [TRAJ] MAX_LINEAR_VELOCITY = 30 (line 11), the highest, below [AXIS_0] MAX_VELOCITY = 400 (line 6)");
 }
+
+/// LinuxCNC takes the first of several: 25 mm/s are 1500 mm/min.
+#[test]
+fn the_first_of_several_values_counts() {
+    let toml = fields(
+        "[KINS]\nKINEMATICS = trivkins\n[TRAJ]\nCOORDINATES = X\nMAX_LINEAR_VELOCITY = 25\nMAX_LINEAR_VELOCITY = 8\n\
+         [AXIS_X]\nMAX_VELOCITY = 400\nMAX_ACCELERATION = 3000\n[AXIS_X]\nMAX_ACCELERATION = 30\n",
+    );
+    assert!(toml.contains("rapid_mm_min = 1500 "), "{toml}");
+    assert!(toml.contains("accel_mm_s2 = 3000 "), "{toml}");
+}

@@ -2,7 +2,7 @@
 
 use super::hal::Hal;
 use crate::found::Figure;
-use crate::ini::{Item, last};
+use crate::ini::{Item, first};
 use crate::text::Log;
 
 /// Seconds of a minute, millimetres of an inch.
@@ -26,7 +26,7 @@ impl Config<'_> {
     pub(super) fn item(&self, sections: &[String], key: &str) -> Option<&Item<'_>> {
         sections
             .iter()
-            .find_map(|section| last(&self.items, section, key))
+            .find_map(|section| first(&self.items, section, key))
     }
 
     pub(super) fn positive(

@@ -5,13 +5,13 @@
 
 use super::config::{Config, named};
 use crate::found::{Figure, Found, entry, highest, shown};
-use crate::ini::last;
+use crate::ini::first;
 use crate::text::Log;
 
 /// `MAX_FEED_OVERRIDE` and `MAX_SPINDLE_OVERRIDE`, which are factors.
 pub(super) fn overrides(config: &Config<'_>, found: &mut Found, log: &mut Log) {
     let mut factor = |key: &str| {
-        let item = last(&config.items, "DISPLAY", key)?;
+        let item = first(&config.items, "DISPLAY", key)?;
         let value = log.number(&item.place, item.value)?;
         Some(Figure::new(value, named(item)))
     };

@@ -5,7 +5,7 @@
 
 use super::config::{Config, INCH, named};
 use crate::found::{Found, shown};
-use crate::ini::{Item, last};
+use crate::ini::{Item, first};
 use crate::text::{Log, Place};
 
 /// A word: its letter and number.
@@ -48,15 +48,15 @@ pub(super) fn read(config: &Config<'_>, found: &mut Found, log: &mut Log) {
     let item = ["RS274NGC_STARTUP_CODE", "STARTUP_CODE"]
         .iter()
         .find_map(|key| {
-            let own = last(&config.items, "RS274NGC", key);
-            own.or_else(|| last(&config.items, "EMC", key))
+            let own = first(&config.items, "RS274NGC", key);
+            own.or_else(|| first(&config.items, "EMC", key))
         });
     let words = item.map_or(Vec::new(), |item| words(item, log));
     let has = |name: &str| words.iter().any(|word| word.name == name);
     let inch = has("G20") || (config.linear == INCH && !has("G21"));
     let unit_mm = if inch { INCH } else { 1.0 };
     if inch {
-        let units = last(&config.items, "TRAJ", "LINEAR_UNITS");
+        let units = first(&config.items, "TRAJ", "LINEAR_UNITS");
         let source = if has("G20") { item } else { units };
         found.language("units = \"inch\"", source.map_or(String::new(), named));
     }

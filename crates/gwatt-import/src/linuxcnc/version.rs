@@ -5,7 +5,7 @@
 
 use super::config::{Config, MIN, named, section};
 use crate::found::{Figure, Found, highest};
-use crate::ini::last;
+use crate::ini::first;
 use crate::text::Log;
 
 /// Which versions an INI file is for.
@@ -20,7 +20,7 @@ enum Version {
 }
 
 fn version(config: &Config<'_>) -> Version {
-    let number = last(&config.items, "EMC", "VERSION").and_then(|it| it.value.parse::<f64>().ok());
+    let number = first(&config.items, "EMC", "VERSION").and_then(|it| it.value.parse::<f64>().ok());
     if number.is_some_and(|number| number >= 1.1) {
         return Version::Joints;
     }
@@ -53,7 +53,7 @@ pub(super) fn traj_velocity(config: &Config<'_>, log: &mut Log) -> Option<Figure
 
 /// Says which limit does not hold.
 pub(super) fn unread(config: &Config<'_>, found: &mut Found, log: &mut Log) {
-    let of = |key| last(&config.items, "TRAJ", key);
+    let of = |key| first(&config.items, "TRAJ", key);
     let (item, why, read) = match (
         version(config),
         of("MAX_VELOCITY"),
