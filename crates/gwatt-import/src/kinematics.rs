@@ -65,8 +65,9 @@ type Named = (&'static str, fn(&mut FoundAxis) -> &mut Option<Figure>);
 pub(crate) fn alike(found: &mut Found, log: &mut Log, file: &str) {
     let Some(name) = found.kinematics else { return };
     let pair = pair(name);
-    if pair.iter().any(|id| found.axes[*id as usize].is_none()) {
-        return;
+    // Both have to be described: what is not known of one is asked for.
+    for id in pair {
+        found.axis(id);
     }
     let figures: [Named; 3] = [
         ("speed", |axis| &mut axis.rapid),

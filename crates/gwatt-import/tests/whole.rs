@@ -189,3 +189,20 @@ fn axes_that_share_motors_are_alike_once_they_are_filled_in() {
         found.toml
     );
 }
+
+/// What is missing of axes that share their motors is named, and nothing else: Y too, of which
+/// the settings say nothing.
+#[test]
+fn what_is_missing_of_axes_that_share_motors_is_named() {
+    let toml = imported("M669 K1\nM203 X30000\nM201 X3500\nM566 X600\n").toml;
+    let errors = Machine::from_toml("m.toml", &toml).unwrap_err();
+    let rules: Vec<&str> = errors.iter().map(|it| it.rule).collect();
+    assert!(
+        rules.iter().all(|rule| *rule == "machine-missing"),
+        "{rules:?}"
+    );
+    assert!(
+        errors.iter().any(|it| it.message.contains("axis Y")),
+        "{errors:?}"
+    );
+}
