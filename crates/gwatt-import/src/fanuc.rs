@@ -112,13 +112,12 @@ fn path(parameters: &Parameters<'_>, found: &mut Found, log: &mut Log) {
             format!("bit LRP of {}", bit.source),
         );
     }
-    let inch = parameters.inch();
-    let of_axes: Vec<Figure> = parameters.of_axes(1430, log);
+    let of_axes: Vec<Figure> = parameters.speeds(1430, log);
     let limits = of_axes.iter().filter(|it| it.value > 0.0);
     // Each axis for itself: the path may be as fast as all together.
     let square: f64 = limits.clone().map(|it| it.value * it.value).sum();
     let top = limits.count();
-    let all = highest(parameters.figures(1422, log)).filter(|it| it.value > 0.0);
+    let all = highest(parameters.speeds(1422, log)).filter(|it| it.value > 0.0);
     let feed = if top > 0 && top == of_axes.len() {
         let source = of_axes
             .first()
@@ -133,7 +132,6 @@ fn path(parameters: &Parameters<'_>, found: &mut Found, log: &mut Log) {
         None
     };
     if let Some(feed) = feed {
-        let feed = feed.times(inch);
         found.path(
             format!("max_feed_mm_min = {}", shown(feed.value)),
             feed.source,

@@ -122,6 +122,8 @@ pub(crate) struct Found {
     /// What the file has and gwatt does not count, as comments.
     pub(crate) remarks: Vec<String>,
     pub(crate) spindle_rpm: Option<Figure>,
+    /// Fields of `[limits]` besides the margin.
+    pub(crate) limits: Vec<Entry>,
     /// Two motors move two axes together.
     pub(crate) core: bool,
     /// What machine files call that.
@@ -142,6 +144,7 @@ impl Found {
             tables: Vec::new(),
             remarks: Vec::new(),
             spindle_rpm: None,
+            limits: Vec::new(),
             core: false,
             kinematics: None,
         }

@@ -86,13 +86,24 @@ fn comment(value: &str, marks: &[char]) -> usize {
     value.len()
 }
 
-/// The last value of a key.
+/// The first value of a key, which is the one that LinuxCNC finds (`inifile.cc`).
+pub(crate) fn first<'i, 't>(
+    items: &'i [Item<'t>],
+    section: &str,
+    key: &str,
+) -> Option<&'i Item<'t>> {
+    items.iter().find(|item| is_of(item, section, key))
+}
+
+/// The last value of a key, as Klipper has it.
 pub(crate) fn last<'i, 't>(
     items: &'i [Item<'t>],
     section: &str,
     key: &str,
 ) -> Option<&'i Item<'t>> {
-    items.iter().rev().find(|item| {
-        item.section.eq_ignore_ascii_case(section) && item.key.eq_ignore_ascii_case(key)
-    })
+    items.iter().rev().find(|item| is_of(item, section, key))
+}
+
+fn is_of(item: &Item<'_>, section: &str, key: &str) -> bool {
+    item.section.eq_ignore_ascii_case(section) && item.key.eq_ignore_ascii_case(key)
 }

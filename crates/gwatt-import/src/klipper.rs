@@ -6,11 +6,11 @@
 mod bodies;
 mod carriages;
 mod config;
+mod extruders;
 mod homing;
 mod macros;
 
 use config::{Config, MIN};
-use std::f64::consts::PI;
 
 use gwatt_machine::AxisId;
 
@@ -71,7 +71,8 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
         let section = section_of(&config, id, section);
         stepper(&config, axis, &section, log);
     }
-    extruder(&config, &mut found, log, velocity.as_ref(), accel.as_ref());
+    extruders::take(&config, &mut found, log, velocity.as_ref(), accel.as_ref());
+    left_out(&config, &mut found, log);
     corners(&config, &mut found, log, accel.as_ref());
     homing::safe_z(&config, &mut found, log);
     macros::named(job, &items, &mut found, log);
@@ -137,63 +138,37 @@ fn stepper(config: &Config<'_, '_>, axis: &mut FoundAxis, of: &Section, log: &mu
     axis.motors = of.steppers.len();
 }
 
-/// The extruder. Its own limits hold for moves of the extruder alone; next to the axes it
-/// follows them, as fast as the largest cross section permits: the higher counts.
-fn extruder(
-    config: &Config<'_, '_>,
-    found: &mut Found,
-    log: &mut Log,
-    velocity: Option<&Figure>,
-    accel: Option<&Figure>,
-) {
-    if !config.has("extruder") {
-        return;
-    }
-    let nozzle = config.positive(log, "extruder", "nozzle_diameter");
-    let filament = config.positive(log, "extruder", "filament_diameter");
-    let section = config.positive(log, "extruder", "max_extrude_cross_section");
-    let (Some(nozzle), Some(filament)) = (nozzle, filament) else {
-        found.axis(AxisId::E);
-        return;
-    };
-    let area = PI / 4.0 * filament.value * filament.value;
-    let usual = 4.0 * nozzle.value * nozzle.value / area;
-    let ratio = section.as_ref().map_or(usual, |it| it.value / area);
-    let with_axes = |all: Option<&Figure>, ratio: f64, why: &str| {
-        all.map(|all| {
-            Figure::new(
-                all.value * ratio,
-                format!("{why}: {} x {}", all.source, shown(round(ratio))),
-            )
-        })
-    };
-    let mut limit = |key: &str, all: Option<&Figure>| {
-        let own = config.positive(log, "extruder", key);
-        let own = own.or_else(|| with_axes(all, usual, "by default"));
-        highest(
-            [own, with_axes(all, ratio, "next to the axes")]
-                .into_iter()
-                .flatten(),
-        )
-    };
-    let rapid = limit("max_extrude_only_velocity", velocity).map(|it| it.times(MIN));
-    let accel = limit("max_extrude_only_accel", accel);
-    let axis = found.axis(AxisId::E);
-    (axis.rapid, axis.accel) = (rapid, accel);
-    if let Some(turn) = config.positive(log, "extruder", "rotation_distance") {
-        let gear = last(config.items, "extruder", "gear_ratio");
-        let gear = gear.map_or(String::new(), |it| format!(", {}", it.source()));
-        axis.drive.push(format!(
-            "Travel of a revolution: {} mm, {}{gear}",
-            shown(turn.value),
-            turn.source
-        ));
-    }
-}
+/// Sections of motors that no axis of a machine file has.
+const OTHER_MOTORS: [&str; 4] = [
+    "dual_carriage",
+    "manual_stepper",
+    "extruder_stepper",
+    "servo",
+];
 
-/// Four digits of a ratio.
-fn round(value: f64) -> f64 {
-    (value * 1e4).round() / 1e4
+/// Names what moves and does not count.
+fn left_out(config: &Config<'_, '_>, found: &mut Found, log: &mut Log) {
+    let mut named: Vec<&str> = Vec::new();
+    for item in config.items {
+        let kind = item.section.split_whitespace().next().unwrap_or("");
+        let is_other = OTHER_MOTORS
+            .iter()
+            .any(|other| kind.eq_ignore_ascii_case(other));
+        if !is_other || named.contains(&item.section.as_str()) {
+            continue;
+        }
+        named.push(&item.section);
+        let message = format!("[{}] moves, and does not count", item.section);
+        let help = "what moves together with an axis belongs to its mass and rotors; for the rest add \
+                    its power to `base_load_w`";
+        log.warning(&item.place.of(item.whole), message, help);
+    }
+    if !named.is_empty() {
+        let list = named.join("], [");
+        found
+            .remarks
+            .push(format!("[{list}]: what it moves does not count"));
+    }
 }
 
 fn corners(config: &Config<'_, '_>, found: &mut Found, log: &mut Log, accel: Option<&Figure>) {
@@ -228,7 +203,7 @@ fn corners(config: &Config<'_, '_>, found: &mut Found, log: &mut Log, accel: Opt
             speed.source,
         ));
     }
-    if let Some(step) = config.number(log, "extruder", "instantaneous_corner_velocity") {
+    if let Some(step) = extruders::corner_step(config, log) {
         if fields.is_empty() {
             fields.push(entry("corner_mm_s = 5", "as Klipper has it by default"));
         }

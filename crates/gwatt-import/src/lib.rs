@@ -89,6 +89,7 @@ pub fn import(
     if let Some(controller) = controller {
         found.controller = controller;
     }
+    kinematics::alike(&mut found, &mut log, job.name());
     nothing(&found, &mut log, job.name(), format);
     let is_error = |finding: &Diagnostic| finding.severity == Severity::Error;
     if log.list.iter().any(is_error) {

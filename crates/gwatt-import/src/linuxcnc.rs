@@ -7,15 +7,18 @@ mod changes;
 mod config;
 mod hal;
 mod kinematics_module;
+mod screen;
+mod start_up;
+mod version;
 
-use config::{Config, named};
+use config::{Config, INCH, MIN, named, section};
 use kinematics_module::by_name;
 use std::path::Path;
 
 use gwatt_machine::AxisId;
 
 use crate::found::{Build, Figure, Found, entry, highest, shown};
-use crate::ini::{Item, Style, items, last};
+use crate::ini::{Item, Style, first, items};
 use crate::near::{Job, Near};
 use crate::text::{File, Log};
 use hal::Hal;
@@ -27,24 +30,17 @@ const STYLE: Style = Style {
     inline: &['#', ';'],
 };
 
-const MIN: f64 = 60.0;
-const INCH: f64 = 25.4;
-
 /// The file that a line includes.
 pub(crate) fn include(line: &str) -> Option<&str> {
     let name = line.strip_prefix("#INCLUDE")?.trim();
     (!name.is_empty()).then_some(name)
 }
 
-fn section(name: &str) -> Vec<String> {
-    vec![name.to_owned()]
-}
-
 /// Reads the INI file; HAL files that it names are looked for next to it.
 pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
     let items = items(job, STYLE);
     let mut found = Found::new("linuxcnc", "Machine under LinuxCNC", Build::Screws);
-    if let Some(name) = last(&items, "EMC", "MACHINE").filter(|it| !it.value.is_empty()) {
+    if let Some(name) = first(&items, "EMC", "MACHINE").filter(|it| !it.value.is_empty()) {
         name.value.clone_into(&mut found.name);
     }
     let scripts = hal_files(&items, job, near, log);
@@ -57,7 +53,7 @@ pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
         hal: Hal::new(scripts.iter().filter(|file| is_hal(&file.name)), log),
     };
     kinematics_of(&config, &mut found, log);
-    let named = last(&config.items, "KINS", "KINEMATICS");
+    let named = first(&config.items, "KINS", "KINEMATICS");
     let named = named.and_then(|it| it.value.split_whitespace().next());
     for module in hal::modules(&scripts) {
         if named != Some(module.name.as_str()) {
@@ -68,7 +64,9 @@ pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
         axis(&config, &mut found, log, id, &joints);
     }
     trajectory(&config, &mut found, log);
-    start_up(&config, &mut found, log);
+    version::unread(&config, &mut found, log);
+    start_up::read(&config, &mut found, log);
+    screen::overrides(&config, &mut found, log);
     changes::tool_change(&config, &mut found, log);
     changes::remaps(&config, &mut found, log);
     corners(&config, &mut found, log);
@@ -83,7 +81,7 @@ pub(crate) fn read(job: &Job, near: &dyn Near, log: &mut Log) -> Found {
 /// The files of HAL that are there. Where the INI file does not name the kinematics (up to
 /// 2.7, Machinekit), one that is missing may.
 fn hal_files(items: &[Item<'_>], job: &Job, near: &dyn Near, log: &mut Log) -> Vec<File> {
-    let named = last(items, "KINS", "KINEMATICS").is_some();
+    let named = first(items, "KINS", "KINEMATICS").is_some();
     let mut files = Vec::new();
     for item in items {
         let is_file = matches!(item.key.as_str(), "HALFILE" | "POSTGUI_HALFILE");
@@ -115,7 +113,7 @@ fn is_hal(name: &str) -> bool {
 
 /// Millimetres, or degrees, of a unit.
 fn units(items: &[Item<'_>], log: &mut Log, key: &str) -> f64 {
-    let Some(item) = last(items, "TRAJ", key) else {
+    let Some(item) = first(items, "TRAJ", key) else {
         return 1.0;
     };
     match item.value.to_ascii_lowercase().as_str() {
@@ -137,7 +135,7 @@ fn units(items: &[Item<'_>], log: &mut Log, key: &str) -> f64 {
 }
 
 fn kinematics_of(config: &Config<'_>, found: &mut Found, log: &mut Log) {
-    let Some(item) = last(&config.items, "KINS", "KINEMATICS") else {
+    let Some(item) = first(&config.items, "KINS", "KINEMATICS") else {
         return;
     };
     let name = item.value.split_whitespace().next().unwrap_or("");
@@ -146,13 +144,13 @@ fn kinematics_of(config: &Config<'_>, found: &mut Found, log: &mut Log) {
 
 /// The letters of the axes, each with its joints in the order of `coordinates=`.
 fn coordinates(config: &Config<'_>) -> Vec<(AxisId, Vec<usize>)> {
-    let kins = last(&config.items, "KINS", "KINEMATICS").and_then(|it| {
+    let kins = first(&config.items, "KINS", "KINEMATICS").and_then(|it| {
         let words = it.value.split_whitespace();
         words
             .rev()
             .find_map(|word| word.strip_prefix("coordinates="))
     });
-    let named = kins.or_else(|| last(&config.items, "TRAJ", "COORDINATES").map(|it| it.value));
+    let named = kins.or_else(|| first(&config.items, "TRAJ", "COORDINATES").map(|it| it.value));
     let mut axes: Vec<(AxisId, Vec<usize>)> = Vec::new();
     let letters = named
         .unwrap_or("XYZ")
@@ -201,7 +199,7 @@ fn axis(config: &Config<'_>, found: &mut Found, log: &mut Log, id: AxisId, joint
     let mut rapid = config.positive(log, &sections, "MAX_VELOCITY", unit * MIN);
     let accel = config.positive(log, &sections, "MAX_ACCELERATION", unit);
     // The path is never faster, and so is none of its axes.
-    let top = traj_velocity(config, log).filter(|_| !rotary);
+    let top = version::traj_velocity(config, log).filter(|_| !rotary);
     if let (Some(own), Some(top)) = (&rapid, top)
         && top.value < own.value
     {
@@ -242,15 +240,6 @@ fn axis(config: &Config<'_>, found: &mut Found, log: &mut Log, id: AxisId, joint
     to.motors = joints.len();
 }
 
-/// The largest speed along the path: before 2.8 that is `MAX_VELOCITY`, and the other one is
-/// the screen's.
-fn traj_velocity(config: &Config<'_>, log: &mut Log) -> Option<Figure> {
-    let traj = section("TRAJ");
-    let keys = ["MAX_LINEAR_VELOCITY", "MAX_VELOCITY"];
-    let found = keys.map(|key| config.positive(log, &traj, key, config.linear * MIN));
-    highest(found.into_iter().flatten())
-}
-
 fn trajectory(config: &Config<'_>, found: &mut Found, log: &mut Log) {
     let angular = config.positive(
         log,
@@ -260,7 +249,7 @@ fn trajectory(config: &Config<'_>, found: &mut Found, log: &mut Log) {
     );
     // Of moves of rotary axes alone the other limit holds; where it is not known, none is.
     let turns = found.axes.iter().flatten().any(|axis| axis.rotary);
-    let top = match (traj_velocity(config, log), angular) {
+    let top = match (version::traj_velocity(config, log), angular) {
         (Some(top), None) if !turns => Some(top),
         (Some(top), Some(angular)) if turns => highest([top, angular]),
         (Some(top), Some(_)) => Some(top),
@@ -281,7 +270,7 @@ fn trajectory(config: &Config<'_>, found: &mut Found, log: &mut Log) {
         ("MAX_LINEAR_JERK", "jerk along the path"),
     ];
     for (key, what) in left {
-        let Some(item) = last(&config.items, "TRAJ", key) else {
+        let Some(item) = first(&config.items, "TRAJ", key) else {
             continue;
         };
         if (key == "ARC_BLEND_ENABLE" && item.value == "1")
@@ -296,63 +285,6 @@ fn trajectory(config: &Config<'_>, found: &mut Found, log: &mut Log) {
             format!("{key}, {what}, is not taken over"),
             help,
         );
-    }
-}
-
-/// `RS274NGC_STARTUP_CODE`: units, centres, tolerance.
-fn start_up(config: &Config<'_>, found: &mut Found, log: &mut Log) {
-    let item = ["RS274NGC_STARTUP_CODE", "STARTUP_CODE"]
-        .iter()
-        .find_map(|key| {
-            let own = last(&config.items, "RS274NGC", key);
-            own.or_else(|| last(&config.items, "EMC", key))
-        });
-    let code = item.map_or(String::new(), |it| it.value.to_ascii_uppercase());
-    let words: Vec<&str> = code.split_whitespace().collect();
-    let has = |word: &str| words.contains(&word);
-    let source = item.map_or(String::new(), |it| named(it));
-    let inch = has("G20") || (config.linear == INCH && !has("G21"));
-    if inch {
-        let units = last(&config.items, "TRAJ", "LINEAR_UNITS").map(|it| named(it));
-        let source = if has("G20") {
-            source.clone()
-        } else {
-            units.unwrap_or_default()
-        };
-        found.language("units = \"inch\"", source);
-    }
-    if has("G90.1") {
-        found.language("arc_centre = \"absolute\"", source.clone());
-    }
-    if let Some(at) = words.iter().position(|word| *word == "G64") {
-        let tolerance = words
-            .get(at + 1)
-            .and_then(|word| word.strip_prefix('P'))
-            .map(str::parse::<f64>);
-        let unit = if inch { INCH } else { 1.0 };
-        match (tolerance, item) {
-            (None, _) => found.language("power_on_tolerance_mm = 0", source),
-            (Some(Ok(value)), _) if value >= 0.0 => {
-                found.language(
-                    format!("power_on_tolerance_mm = {}", shown(value * unit)),
-                    source,
-                );
-            }
-            (_, Some(item)) => log.error(
-                &item.place,
-                "the tolerance of G64 cannot be read".to_owned(),
-                "write it as G64 P0.01",
-            ),
-            _ => {}
-        }
-    }
-    for word in ["G61", "G61.1"] {
-        if has(word) {
-            let note = format!(
-                "Start-up code {word}: programs count as in the mode that they select, else in G64"
-            );
-            found.remarks.push(note);
-        }
     }
 }
 

@@ -67,36 +67,56 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
     found
 }
 
-/// Which axis each entry of a list is for.
-fn letters(defines: &Defines<'_>, entries: usize) -> Vec<AxisId> {
-    let mut list = vec![AxisId::X, AxisId::Y, AxisId::Z];
-    for name in ["AXIS4_NAME", "AXIS5_NAME", "AXIS6_NAME"] {
-        let letter = defines
-            .all(name)
-            .next()
-            .map(|it| it.value.trim_matches('\'').as_bytes());
-        let driven = defines.all(match name {
-            "AXIS4_NAME" => "I_DRIVER_TYPE",
-            "AXIS5_NAME" => "J_DRIVER_TYPE",
-            _ => "K_DRIVER_TYPE",
-        });
-        if let (Some([letter]), true) = (letter, driven.count() > 0) {
-            list.extend(AxisId::from_letter(*letter));
+/// Axes after X, Y and Z: the driver that makes one, its name where none is given, and the
+/// names of what says so.
+const FURTHER: [(&str, AxisId, &str, &str); 6] = [
+    ("I_DRIVER_TYPE", AxisId::A, "AXIS4_NAME", "AXIS4_ROTATES"),
+    ("J_DRIVER_TYPE", AxisId::B, "AXIS5_NAME", "AXIS5_ROTATES"),
+    ("K_DRIVER_TYPE", AxisId::C, "AXIS6_NAME", "AXIS6_ROTATES"),
+    ("U_DRIVER_TYPE", AxisId::U, "AXIS7_NAME", "AXIS7_ROTATES"),
+    ("V_DRIVER_TYPE", AxisId::V, "AXIS8_NAME", "AXIS8_ROTATES"),
+    ("W_DRIVER_TYPE", AxisId::W, "AXIS9_NAME", "AXIS9_ROTATES"),
+];
+
+/// The axes in the order of lists, without extruders; each with whether it turns.
+fn letters(defines: &Defines<'_>) -> Vec<(AxisId, bool)> {
+    let mut list = vec![(AxisId::X, false), (AxisId::Y, false), (AxisId::Z, false)];
+    for (driver, usual, name, rotates) in FURTHER {
+        if defines.all(driver).next().is_none() {
+            continue;
         }
-    }
-    list.truncate(entries);
-    // Extruders come last; several have one value or one each.
-    while list.len() < entries {
-        list.push(AxisId::E);
+        let given = defines.all(name).next();
+        let letter = given.map(|it| it.value.trim_matches('\'').as_bytes());
+        let id = match letter {
+            Some([letter]) => AxisId::from_letter(*letter).unwrap_or(usual),
+            _ => usual,
+        };
+        list.push((id, defines.is_on(rotates)));
     }
     list
 }
 
 fn axes(defines: &Defines<'_>, found: &mut Found, log: &mut Log) {
+    let letters = letters(defines);
+    // Extruders come last; several have one value or one each.
+    let has_extruder = defines.only("EXTRUDERS", 0) != Some(0.0);
     let mut put = |name: &str, factor: f64, set: fn(&mut FoundAxis) -> &mut Option<Figure>| {
         for (values, source) in defines.lists(log, name) {
-            for (id, value) in letters(defines, values.len()).into_iter().zip(values) {
-                let slot = set(found.axis(id));
+            if values.len() > letters.len() && !has_extruder {
+                let message = format!("{source}: there are more values than axes with a driver");
+                let help =
+                    "what is driven and has no driver there belongs into the machine file by hand";
+                log.hint(job_name(defines), message, help);
+            }
+            for (at, value) in values.into_iter().enumerate() {
+                let known = letters.get(at).copied();
+                let Some((id, rotates)) = known.or(has_extruder.then_some((AxisId::E, false)))
+                else {
+                    break;
+                };
+                let axis = found.axis(id);
+                axis.rotary = rotates;
+                let slot = set(axis);
                 if slot.as_ref().is_none_or(|old| value * factor > old.value) {
                     *slot = Some(Figure::new(value * factor, source.clone()));
                 }

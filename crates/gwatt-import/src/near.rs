@@ -75,7 +75,7 @@ impl Job {
         self.texts.push(text);
         let mut from = 0;
         for (line, pattern) in includes {
-            self.order.push((index, from..line));
+            self.order.push((index, from..line + 1));
             from = line + 1;
             let found = near.files(&file.name, &pattern);
             let whole = self.texts[index].place(line);

@@ -3,10 +3,13 @@
 //! Source: Duet documentation, "`GCode` dictionary": M201, M203, M204, M208, M566, M574, M584,
 //! M595, M667, M669. Speeds are in mm/min there.
 
+mod blocks;
+
+use blocks::{Blocks, Line};
 use gwatt_machine::AxisId;
 
 use crate::expression;
-use crate::found::{Build, Figure, Found, FoundAxis, entry, shown};
+use crate::found::{Build, Figure, Found, entry, highest, shown};
 use crate::kinematics;
 use crate::near::Job;
 use crate::text::{Log, Place};
@@ -30,6 +33,8 @@ pub(crate) fn include(line: &str) -> Option<&str> {
 /// What the last commands say of the machine as a whole.
 #[derive(Default)]
 struct Settings {
+    /// The line that is read may not run.
+    is_unsure: bool,
     steps: Vec<(AxisId, Figure)>,
     all_kinds: Option<Figure>,
     print: Option<Figure>,
@@ -44,15 +49,23 @@ pub(crate) fn read(job: &Job, log: &mut Log) -> Found {
     let mut settings = Settings::default();
     let mut unit = 1.0;
     let mut mode: Option<Place<'_>> = None;
+    let mut blocks = Blocks::default();
     for (_, place) in job.places() {
+        let line = blocks.next(&place);
+        if line == Line::Bare {
+            continue;
+        }
+        settings.is_unsure = line == Line::Unsure;
         for command in commands(&place) {
             match command.code.as_str() {
                 "G20" => unit = INCH,
+                "G21" | "M451" if settings.is_unsure => {}
                 "G21" => unit = 1.0,
                 "M451" => mode = None,
                 "M452" | "M453" => mode = Some(command.place.clone()),
                 _ => {
                     unsure_unit(log, &command, unit);
+                    unsure_block(log, &command, settings.is_unsure);
                     take(&mut found, &mut settings, log, &command, unit);
                 }
             }
@@ -85,6 +98,27 @@ fn unsure_unit(log: &mut Log, command: &Command<'_>, unit: f64) {
     }
 }
 
+/// Limits in a block of `if` or `while`.
+fn unsure_block(log: &mut Log, command: &Command<'_>, is_unsure: bool) {
+    let limits = ["M201", "M203", "M204", "M205", "M566"];
+    if is_unsure && limits.contains(&command.code.as_str()) {
+        log.warning(
+            &command.place,
+            format!(
+                "{} in a block that may not run: the highest of all values counts",
+                command.code
+            ),
+            "where that is too high, import a copy of the file without the blocks that do not run",
+        );
+    }
+}
+
+/// Sets a value; one that may not hold only where it is higher.
+fn set(slot: &mut Option<Figure>, figure: Figure, is_unsure: bool) {
+    let old = slot.take().filter(|_| is_unsure);
+    *slot = highest(old.into_iter().chain([figure]));
+}
+
 /// A number, or an expression of numbers in braces.
 fn number(log: &mut Log, place: &Place<'_>, text: &str) -> Option<f64> {
     let inner = text
@@ -111,16 +145,24 @@ fn take(
     unit: f64,
 ) {
     match command.code.as_str() {
-        "M203" => axes(found, log, command, unit * per_minute(command), |axis| {
-            &mut axis.rapid
-        }),
-        "M201" => axes(found, log, command, unit, |axis| &mut axis.accel),
+        "M203" => {
+            let factor = unit * per_minute(command);
+            for (id, figure) in axes(log, command, factor) {
+                set(&mut found.axis(id).rapid, figure, settings.is_unsure);
+            }
+        }
+        "M201" => {
+            for (id, figure) in axes(log, command, unit) {
+                set(&mut found.axis(id).accel, figure, settings.is_unsure);
+            }
+        }
         "M204" => {
             for (letter, slot) in [('P', &mut settings.print), ('T', &mut settings.travel)] {
                 if let Some(word) = command.word(letter)
                     && let Some(value) = positive(log, &word.place, word.text, "an acceleration")
                 {
-                    *slot = Some(Figure::new(value * unit, command.source(word)));
+                    let figure = Figure::new(value * unit, command.source(word));
+                    set(slot, figure, settings.is_unsure);
                 }
             }
         }
@@ -129,27 +171,29 @@ fn take(
         "M208" => limits(settings, log, command, unit),
         "M574" => endstops(found, settings, command),
         "M584" => drives(found, settings, command),
-        "M595" => {
-            let queue = command
-                .word('P')
-                .filter(|_| command.word('Q').is_none_or(|q| q.text == "0"));
-            if let Some(word) = queue
-                && let Some(value) = log.positive(&word.place, word.text, "a queue")
-                && value >= 2.0
-            {
-                // Up to half of the queue is fixed, as time goes.
-                let seen = (0.5 * value - 1.0).floor().max(1.0);
-                found.look_ahead(format!("blocks = {}", shown(seen)), command.source(word));
-                let most = (value - 1.0).floor().max(1.0);
-                found.look_ahead(
-                    format!("blocks_at_most = {}", shown(most)),
-                    command.source(word),
-                );
-            }
-        }
+        "M595" => queue(found, log, command),
         "M665" => kinematics::refuse(log, &command.place, "delta (M665)"),
         "M669" | "M667" => kinematics_of(found, log, command),
         _ => {}
+    }
+}
+
+/// M595: how many moves the planner holds.
+fn queue(found: &mut Found, log: &mut Log, command: &Command<'_>) {
+    let queue = command
+        .word('P')
+        .filter(|_| command.word('Q').is_none_or(|q| q.text == "0"));
+    let Some(word) = queue else { return };
+    let read = log.positive(&word.place, word.text, "a queue");
+    if let Some(value) = read.filter(|value| *value >= 2.0) {
+        found.look_ahead.clear();
+        // Up to half of the queue is fixed, as time goes.
+        let seen = (0.5 * value - 1.0).floor().max(1.0);
+        let most = (value - 1.0).floor().max(1.0);
+        for (name, blocks) in [("blocks", seen), ("blocks_at_most", most)] {
+            let field = format!("{name} = {}", shown(blocks));
+            found.look_ahead(field, command.source(word));
+        }
     }
 }
 
@@ -181,20 +225,13 @@ fn step(log: &mut Log, command: &Command<'_>, word: &Word<'_>) -> Option<Figure>
     Some(Figure::new(most, command.source(word)))
 }
 
-fn axes(
-    found: &mut Found,
-    log: &mut Log,
-    command: &Command<'_>,
-    factor: f64,
-    slot: fn(&mut FoundAxis) -> &mut Option<Figure>,
-) {
-    for word in &command.words {
-        if let Some(id) = AxisId::from_letter(word.letter as u8)
-            && let Some(figure) = largest(log, command, word)
-        {
-            *slot(found.axis(id)) = Some(figure.times(factor));
-        }
-    }
+/// The limits of axes that a command gives.
+fn axes(log: &mut Log, command: &Command<'_>, factor: f64) -> Vec<(AxisId, Figure)> {
+    let of = |word: &Word<'_>| {
+        let id = AxisId::from_letter(word.letter as u8)?;
+        Some((id, largest(log, command, word)?.times(factor)))
+    };
+    command.words.iter().filter_map(of).collect()
 }
 
 fn steps(settings: &mut Settings, log: &mut Log, command: &Command<'_>, factor: f64) {
@@ -206,8 +243,10 @@ fn steps(settings: &mut Settings, log: &mut Log, command: &Command<'_>, factor: 
         } else if let Some(id) = AxisId::from_letter(word.letter as u8)
             && let Some(figure) = step(log, command, word)
         {
-            settings.steps.retain(|(other, _)| *other != id);
-            settings.steps.push((id, figure.times(factor)));
+            let known = settings.steps.iter().position(|(other, _)| *other == id);
+            let mut slot = known.map(|at| settings.steps.remove(at).1);
+            set(&mut slot, figure.times(factor), settings.is_unsure);
+            settings.steps.extend(slot.map(|figure| (id, figure)));
         }
     }
 }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use gwatt_machine::{ALL_AXES, AxisId};
 
 use crate::found::{Build, Entry, Figure, Found, FoundAxis, shown};
+use crate::kinematics::pair;
 
 /// Where comments next to fields begin.
 const COLUMN: usize = 29;
@@ -36,6 +37,9 @@ pub(crate) fn machine_file(found: &Found, files: &[String]) -> String {
         "margin = 0.1",
         "share of the peak power that is kept free",
     );
+    for entry in &found.limits {
+        line(&mut out, &entry.field, &entry.source);
+    }
     out
 }
 
@@ -187,10 +191,7 @@ fn field(out: &mut String, key: &str, figure: Option<&Figure>) -> bool {
 /// What the file cannot know.
 fn drive(out: &mut String, id: AxisId, axis: &FoundAxis, found: &Found) {
     let build = found.build;
-    let shared = match found.kinematics {
-        Some("corexz") => [AxisId::X, AxisId::Z],
-        _ => [AxisId::X, AxisId::Y],
-    };
+    let shared = pair(found.kinematics.unwrap_or_default());
     let rotor = if found.core && shared.contains(&id) {
         let [first, second] = shared.map(|id| char::from(id.letter()));
         format!("rotors of both motors, for {first} as for {second}")
@@ -242,7 +243,10 @@ fn drive(out: &mut String, id: AxisId, axis: &FoundAxis, found: &Found) {
         ),
     }
     asked(out, "coulomb_n = ", "friction; without it none counts");
-    if id == AxisId::Z {
+    if found.kinematics == Some("corexz") && shared.contains(&id) {
+        let what = "weight of Z that nothing balances, for X as for Z";
+        asked(out, "gravity_n = ", what);
+    } else if id == AxisId::Z {
         asked(out, "gravity_n = ", "weight that nothing balances");
     }
     asked(

@@ -81,6 +81,98 @@ fn fanuc_in_inches() {
     assert!(whole.contains("rapid_mm_min = 25400 "), "{whole}");
 }
 
+/// 4000 tenths of an inch a minute are 10160 mm/min; three axes of that together √3 · 10160.
+#[test]
+fn largest_feeds_of_fanuc_in_inches() {
+    let rest = "N01001P00000001\nN01020A1P88A2P89A3P90\nN01420A1P9448A2P9448A3P7086\nN01620A1P150A2P150A3P150\n";
+    let feed = |more: &str| {
+        let toml = fields(&format!("{rest}{more}"));
+        let mut lines = toml.lines();
+        lines
+            .find(|line| line.starts_with("max_feed"))
+            .map(str::to_owned)
+    };
+    assert_snapshot!(feed("N01422P4000\n").unwrap_or_default(), @r"max_feed_mm_min = 10160      # N01422 P4000 (line 5)");
+    assert_snapshot!(feed("N01422P400.0\n").unwrap_or_default(), @r"max_feed_mm_min = 10160      # N01422 P400.0 (line 5)");
+    assert_snapshot!(feed("N01430A1P4000A2P4000A3P4000\n").unwrap_or_default(), @r"max_feed_mm_min = 17597.6362 # all axes of N01430 A1 P4000 (line 5) together");
+}
+
+/// All axes belong to path 1, and what the other paths have says nothing of them.
+#[test]
+fn paths_of_fanuc_without_axes() {
+    let axes = "N00981Q1A1P1A2P1A3P0\nN01020Q1A1P88A2P90A3P0\nN01420Q1A1P24000.0A2P24000.0A3P0.0\nN01620Q1A1P200A2P200A3P0\n";
+    let paths = "N01401Q1L1P01110010L2P00000000L3P00000000\nN01422Q1L1P8000.0L2P9000.0\nN03401Q1L2P00000001L3P00000000\n";
+    assert_snapshot!(fields(&format!("{axes}{paths}")), @r#"
+    controller = "fanuc-lathe"
+    [converter]
+    [path]
+    rapid = "linear"             # bit LRP of N01401 L1 P01110010 (line 5)
+    max_feed_mm_min = 8000       # N01422 L1 P8000.0 (line 6)
+    [language]
+    decimal_point = "calculator" # bit DPI of N03401 L2 P00000001 (line 7)
+    [axes.X]
+    kind = "linear"
+    rapid_mm_min = 24000         # N01420 A1 P24000.0 (line 3)
+    accel_mm_s2 = 2000           # 24000/min in 200 ms: N01620 A1 P200 (line 4)
+    [axes.Z]
+    kind = "linear"
+    rapid_mm_min = 24000         # N01420 A2 P24000.0 (line 3)
+    accel_mm_s2 = 2000           # 24000/min in 200 ms: N01620 A2 P200 (line 4)
+    [limits]
+    margin = 0.1                 # share of the peak power that is kept free
+    "#);
+    // Two paths that have axes: either rapid may be, and each axis has the feed of its own.
+    let two = axes.replace("A2P1", "A2P2");
+    assert_snapshot!(fields(&format!("{two}{paths}N01622Q1A1P10A2P10\n")), @r#"
+    controller = "fanuc-lathe"
+    [converter]
+    [path]
+    rapid = "independent"        # bit LRP of N01401 L2 P00000000 (line 5)
+    max_feed_mm_min = 9000       # N01422 L2 P9000.0 (line 6), the highest
+    [language]
+    decimal_point = "calculator" # bit DPI of N03401 L2 P00000001 (line 7)
+    [axes.X]
+    kind = "linear"
+    rapid_mm_min = 24000         # N01420 A1 P24000.0 (line 3)
+    accel_mm_s2 = 13333.33333    # 8000/min in 10 ms: N01622 A1 P10 (line 8), the highest
+    [axes.Z]
+    kind = "linear"
+    rapid_mm_min = 24000         # N01420 A2 P24000.0 (line 3)
+    accel_mm_s2 = 15000          # 9000/min in 10 ms: N01622 A2 P10 (line 8), the highest
+    [limits]
+    margin = 0.1                 # share of the peak power that is kept free
+    "#);
+}
+
+/// Two lines for the same value, as in files that are put together: the last is in force.
+#[test]
+fn the_last_line_of_a_value_counts() {
+    let fanuc = "N1020 A1P88 A2P90\nN1420 A1P24000 A2P24000\nN1620 A1P200 A2P200\nN1420 A1P30000 A2P30000\n";
+    let found = imported(fanuc);
+    assert_eq!(render(&found.warnings), "");
+    assert!(
+        found.toml.contains("rapid_mm_min = 30000"),
+        "{}",
+        found.toml
+    );
+    assert!(!found.toml.contains("24000"), "{}", found.toml);
+    let siemens = "N10000 $MN_AXCONF_MACHAX_NAME_TAB[0]=\"X1\"\n\
+                   N32000 $MA_MAX_AX_VELO[AX1]=36000\nN32000 $MA_MAX_AX_VELO[X1]=50000\nN32000 $MA_MAX_AX_VELO[AX1]=60000\n\
+                   N32300 $MA_MAX_AX_ACCEL[0,AX1]=9\nN32300 $MA_MAX_AX_ACCEL[1,AX1]=5\nN32300 $MA_MAX_AX_ACCEL[0, AX1]=4\n";
+    let toml = fields(siemens);
+    assert!(toml.contains("rapid_mm_min = 60000"), "{toml}");
+    assert!(toml.contains("accel_mm_s2 = 5000"), "{toml}");
+}
+
+/// 4 m/s², 1.5 times that in rapids.
+#[test]
+fn a_higher_acceleration_of_sinumerik_in_rapids() {
+    let toml = fields(
+        "N32000 $MA_MAX_AX_VELO[AX1]=36000\nN32300 $MA_MAX_AX_ACCEL[0,AX1]=4\nN32434 $MA_G00_ACCEL_FACTOR[AX1]=1.5\n",
+    );
+    assert!(toml.contains("accel_mm_s2 = 6000"), "{toml}");
+}
+
 #[test]
 fn sinumerik() {
     let text = "CHANDATA(1)\nN10000 $MN_AXCONF_MACHAX_NAME_TAB[0]=\"X1\" '5a7e\nN10000 $MN_AXCONF_MACHAX_NAME_TAB[1]=\"SP1\"\n\
@@ -207,7 +299,7 @@ fn linuxcnc_of_old() {
     controller = "linuxcnc"
     [converter]
     [path]
-    max_feed_mm_min = 6000       # [TRAJ] MAX_VELOCITY = 100 (line 4), the highest
+    max_feed_mm_min = 6000       # [TRAJ] MAX_VELOCITY = 100 (line 4)
     [axes.X]
     kind = "linear"
     rapid_mm_min = 3000          # [AXIS_0] MAX_VELOCITY = 50 (line 8)

@@ -3,7 +3,7 @@
 use gwatt_import::{Format, Wanted, import};
 use insta::assert_snapshot;
 
-use super::{Folder, fields, file, imported, refused, render};
+use super::{Folder, fields, file, imported, in_force, refused, render};
 
 /// M203 S1: 100 mm/s are 6000 mm/min.
 #[test]
@@ -152,4 +152,56 @@ fn the_highest_is_said_once() {
         toml.contains("the highest") && !toml.contains("the highest, the highest"),
         "{toml}"
     );
+}
+
+/// 24000 is the highest of three; the block ends where a line is indented as its `if` is, and a
+/// file that it calls is part of it.
+#[test]
+fn limits_of_reprapfirmware_in_blocks_that_may_not_run() {
+    let own = "M203 X6000 Y24000\nM201 X500 Y5000\nM566 X600 Y600\nM204 P2000 T3000\n\
+               if {sensors.gpIn[0].value == 1}\n  M203 Y6000\n\n  M201 Y300\n  if true\n    M566 Y300\n  else\n\
+               \t; slow\n    M98 P\"slow.g\"\nM201 X400\n";
+    let near = Folder(vec![file("slow.g", "M204 P1000 T5000\nG21\n")]);
+    let found = import(&[file("config.g", own)], Wanted::default(), &near).unwrap();
+    assert_snapshot!(in_force(&found.toml), @r#"
+    controller = "reprap"
+    [converter]
+    [path]
+    accel_mm_s2 = { print = 2000, travel = 5000 } # M204 P2000 (line 4), the highest, M204 T5000 (line 1), the highest
+    [look_ahead.speed_step]
+    step_mm_s = { X = 10, Y = 10 } # M566 X600 (line 3), M566 Y600 (line 3), the highest
+    [axes.X]
+    kind = "linear"
+    rapid_mm_min = 6000          # M203 X6000 (line 1)
+    accel_mm_s2 = 400            # M201 X400 (line 14)
+    [axes.Y]
+    kind = "linear"
+    rapid_mm_min = 24000         # M203 Y24000 (line 1), the highest
+    accel_mm_s2 = 5000           # M201 Y5000 (line 2), the highest
+    [limits]
+    margin = 0.1                 # share of the peak power that is kept free
+    "#);
+    assert_snapshot!(render(&found.warnings), @r"
+    config.g:6, warning: M203 in a block that may not run: the highest of all values counts / where that is too high, import a copy of the file without the blocks that do not run
+      |   M203 Y6000
+      |   ^^^^^^^^^^
+    config.g:8, warning: M201 in a block that may not run: the highest of all values counts / where that is too high, import a copy of the file without the blocks that do not run
+      |   M201 Y300
+      |   ^^^^^^^^^
+    config.g:10, warning: M566 in a block that may not run: the highest of all values counts / where that is too high, import a copy of the file without the blocks that do not run
+      |     M566 Y300
+      |     ^^^^^^^^^
+    slow.g:1, warning: M204 in a block that may not run: the highest of all values counts / where that is too high, import a copy of the file without the blocks that do not run
+      | M204 P1000 T5000
+      | ^^^^^^^^^^^^^^^^
+    ");
+}
+
+/// Of a queue the last counts: half of 60 less one, and 59.
+#[test]
+fn a_queue_that_is_set_twice() {
+    let toml = fields("M595 P40\nM595 P60\nM203 X6000\nM201 X500\nM566 X600\n");
+    assert!(toml.contains("blocks = 29 "), "{toml}");
+    assert!(toml.contains("blocks_at_most = 59 "), "{toml}");
+    assert!(!toml.contains("39"), "{toml}");
 }

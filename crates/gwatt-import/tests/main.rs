@@ -6,6 +6,8 @@ mod errors;
 mod firmware;
 mod kinematics;
 mod limits;
+mod linuxcnc;
+mod printers;
 mod robust;
 mod whole;
 

@@ -3,7 +3,7 @@
 use gwatt_machine::{AxisId, CornerRule, Machine};
 use insta::assert_snapshot;
 
-use super::imported;
+use super::{imported, render};
 
 const GRBL: &str = "$11=0.020\n$110=8000\n$111=8000\n$112=500\n$120=400\n$121=400\n$122=50\n$100=80.000\n$130=740\n";
 
@@ -78,6 +78,8 @@ fn as_it_is_written() {
     "#);
 }
 
+const SCREW: &str = "screw = { diameter_mm = 20, length_mm = 800, lead_mm = 10 }";
+
 /// A person fills in what is asked for.
 fn filled(toml: &str) -> String {
     let answers = [
@@ -86,7 +88,7 @@ fn filled(toml: &str) -> String {
         ("# rotor_kg_m2 = ", "rotor_kg_m2 = 0.00012 "),
         (
             "# screw = { diameter_mm = , length_mm = , lead_mm = }",
-            "screw = { diameter_mm = 20, length_mm = 800, lead_mm = 10 }",
+            SCREW,
         ),
     ];
     answers
@@ -130,4 +132,77 @@ fn what_is_missing_is_named() {
     axis Y needs a mass or an inertia / give `moved_mass_kg` with `rotor_kg_m2` and `screw`, `pulley` or `pinion`; or all of it as `mass_kg` at the load or `inertia_kg_m2` at the motor
     axis Z needs a mass or an inertia / give `moved_mass_kg` with `rotor_kg_m2` and `screw`, `pulley` or `pinion`; or all of it as `mass_kg` at the load or `inertia_kg_m2` at the motor
     ");
+}
+
+/// Axes that share their motors count with the higher speed and acceleration of both: only so
+/// `machine check` takes the file.
+#[test]
+fn axes_that_share_motors_are_alike_once_they_are_filled_in() {
+    let text = "[printer]\nkinematics: corexz\nmax_velocity: 200\nmax_accel: 2500\nmax_z_velocity: 5\nmax_z_accel: 100\n\
+                [stepper_x]\nposition_endstop: 0\n";
+    let found = imported(text);
+    assert_snapshot!(render(&found.warnings), @r"
+    settings:2, warning: two motors move two axes together: they count by the robust bound / give both axes the larger mass and friction, and the rotors of both motors
+      | kinematics: corexz
+      |             ^^^^^^
+    settings:0, warning: Z counts with the speed of X, which is higher: they share their motors / what motors draw is bounded only where both axes are alike; times of moves may be too short
+    settings:0, warning: Z counts with the acceleration of X, which is higher: they share their motors / what motors draw is bounded only where both axes are alike; times of moves may be too short
+    ");
+    let lines = found
+        .toml
+        .lines()
+        .filter(|line| line.starts_with("rapid") || line.starts_with("accel"));
+    assert_snapshot!(lines.collect::<Vec<_>>().join("\n"), @r"
+    rapid_mm_min = 12000         # max_velocity: 200 (line 3)
+    accel_mm_s2 = 2500           # max_accel: 2500 (line 4)
+    rapid_mm_min = 12000         # max_velocity: 200 (line 3)
+    accel_mm_s2 = 2500           # max_accel: 2500 (line 4)
+    rapid_mm_min = 12000         # that of X: max_velocity: 200 (line 3); its own: max_z_velocity: 5 (line 5)
+    accel_mm_s2 = 2500           # that of X: max_accel: 2500 (line 4); its own: max_z_accel: 100 (line 6)
+    ");
+    let pulley =
+        filled(&found.toml).replace("# pulley = { teeth = , pitch_mm = , width_mm = }", SCREW);
+    let (machine, _) = Machine::from_toml("m.toml", &pulley).unwrap();
+    let [x, z] = [AxisId::X, AxisId::Z].map(|id| machine.axes[id as usize].unwrap());
+    assert_eq!(x.rapid_mm_s, z.rapid_mm_s);
+    assert_eq!(found.toml.matches("for X as for Z").count(), 4);
+    // In the other order.
+    let core = "M669 K1\nM203 X30000 Y36000\nM201 X3500 Y3000\nM566 X600 Y600\n";
+    let found = imported(core);
+    assert_snapshot!(render(&found.warnings), @r"
+    settings:1, warning: two motors move two axes together: they count by the robust bound / give both axes the larger mass and friction, and the rotors of both motors
+      | M669 K1
+      | ^^^^^^^
+    settings:0, warning: X counts with the speed of Y, which is higher: they share their motors / what motors draw is bounded only where both axes are alike; times of moves may be too short
+    settings:0, warning: Y counts with the acceleration of X, which is higher: they share their motors / what motors draw is bounded only where both axes are alike; times of moves may be too short
+    ");
+    assert_eq!(
+        found.toml.matches("\naccel_mm_s2 = 3500 ").count(),
+        2,
+        "{}",
+        found.toml
+    );
+    assert_eq!(
+        found.toml.matches("\nrapid_mm_min = 36000 ").count(),
+        2,
+        "{}",
+        found.toml
+    );
+}
+
+/// What is missing of axes that share their motors is named, and nothing else: Y too, of which
+/// the settings say nothing.
+#[test]
+fn what_is_missing_of_axes_that_share_motors_is_named() {
+    let toml = imported("M669 K1\nM203 X30000\nM201 X3500\nM566 X600\n").toml;
+    let errors = Machine::from_toml("m.toml", &toml).unwrap_err();
+    let rules: Vec<&str> = errors.iter().map(|it| it.rule).collect();
+    assert!(
+        rules.iter().all(|rule| *rule == "machine-missing"),
+        "{rules:?}"
+    );
+    assert!(
+        errors.iter().any(|it| it.message.contains("axis Y")),
+        "{errors:?}"
+    );
 }

@@ -157,11 +157,7 @@ fn axis(
 impl<'t> Reader<'_, 't> {
     fn value(&self, number: u32) -> Option<&Value<'t>> {
         let own = self.parameters.axis(number, self.index);
-        own.or_else(|| {
-            self.parameters
-                .of(number)
-                .find(|value| value.of != 'A' && value.of != 'S')
-        })
+        own.or_else(|| self.parameters.of_path(number, self.index))
     }
 
     fn figure(&self, number: u32, log: &mut Log) -> Option<(Figure, &'t str)> {

@@ -18,6 +18,15 @@ pub(crate) struct Value<'t> {
     pub(crate) text: &'t str,
     pub(crate) source: String,
     pub(crate) place: Place<'t>,
+    /// Which of all lines it stands in.
+    row: usize,
+}
+
+impl Value<'_> {
+    /// The path that it is for.
+    fn path(&self) -> Option<usize> {
+        matches!(self.of, 'L' | 'T').then_some(self.index)
+    }
 }
 
 /// A bit of a parameter.
@@ -47,17 +56,56 @@ pub(crate) fn number(line: &str) -> Option<(u32, &str)> {
 }
 
 impl<'t> Parameters<'t> {
-    /// Reads all lines.
+    /// Reads all lines; of several for the same value the last counts, and what is for paths
+    /// without axes does not.
     pub(crate) fn new(job: &'t Job, log: &mut Log) -> Self {
         let mut list: BTreeMap<u32, Vec<Value<'t>>> = BTreeMap::new();
-        for (_, place) in job.places() {
+        for (row, (_, place)) in job.places().enumerate() {
             let line = place.line();
             let code = line.split(['(', ';']).next().unwrap_or(line);
             if let Some((number, rest)) = number(code) {
-                values(number, rest, &place, list.entry(number).or_default(), log);
+                let list = list.entry(number).or_default();
+                let known = list.len();
+                values(number, rest, &place, list, log);
+                for value in list.iter_mut().skip(known) {
+                    value.row = row;
+                }
             }
         }
-        Self { list }
+        for values in list.values_mut() {
+            let mut last = BTreeMap::new();
+            for value in values.iter() {
+                last.insert((value.of, value.index), value.row);
+            }
+            values.retain(|value| last.get(&(value.of, value.index)) == Some(&value.row));
+        }
+        let mut read = Self { list };
+        read.drop_paths_without_axes();
+        read
+    }
+
+    /// Parameter 981 gives each axis its path.
+    fn drop_paths_without_axes(&mut self) {
+        let there = self.of(981).filter(|it| self.exists(it.index));
+        let used: Vec<usize> = there
+            .filter_map(|it| it.text.parse().ok())
+            .filter(|path| *path > 0)
+            .collect();
+        let is_used = |value: &Value<'_>| value.path().is_none_or(|path| used.contains(&path));
+        for values in self.list.values_mut() {
+            if values.iter().any(|it| it.path().is_some() && is_used(it)) {
+                values.retain(is_used);
+            }
+        }
+    }
+
+    /// The value of the path that an axis belongs to, or that of the control.
+    pub(crate) fn of_path(&self, number: u32, axis: usize) -> Option<&Value<'t>> {
+        let path = self.axis(981, axis).and_then(|it| it.text.parse().ok());
+        let own = self
+            .of(number)
+            .find(|it| path.is_some() && it.path() == path);
+        own.or_else(|| self.of(number).find(|it| it.of != 'A' && it.of != 'S'))
     }
 
     /// The values of a parameter.
@@ -80,20 +128,23 @@ impl<'t> Parameters<'t> {
         self.of(number).filter_map(read).collect()
     }
 
+    /// The speeds of a parameter in mm/min, of axes that are there, paths and the control.
+    pub(crate) fn speeds(&self, number: u32, log: &mut Log) -> Vec<Figure> {
+        let there = self
+            .of(number)
+            .filter(|it| it.of != 'A' || self.exists(it.index));
+        let read = |value: &Value<'t>| {
+            let read = log.number(&value.place, value.text)?;
+            let speed = read * self.speed_unit(value.text);
+            Some(Figure::new(speed, value.source.clone()))
+        };
+        there.filter_map(read).collect()
+    }
+
     /// Whether an axis is there: one whose name (1020) is 0 is none.
     pub(crate) fn exists(&self, index: usize) -> bool {
         let name = self.axis(1020, index);
         name.is_none_or(|name| name.text.parse() != Ok(0.0_f64))
-    }
-
-    /// The numbers of a parameter of the axes that are there.
-    pub(crate) fn of_axes(&self, number: u32, log: &mut Log) -> Vec<Figure> {
-        let there = self.of(number).filter(|it| self.exists(it.index));
-        let read = |value: &Value<'t>| {
-            let read = log.number(&value.place, value.text)?;
-            Some(Figure::new(read, value.source.clone()))
-        };
-        there.filter_map(read).collect()
     }
 
     /// A bit of the first value.
@@ -203,6 +254,7 @@ fn values<'t>(
                     text,
                     source: place.source(&format!("N{number:05}{which} {letter}{text}")),
                     place: place.of(if text.is_empty() { tail } else { text }),
+                    row: 0,
                 });
             }
             'I' => {

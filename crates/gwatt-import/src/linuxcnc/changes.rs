@@ -6,13 +6,13 @@ use gwatt_machine::{ALL_AXES, AxisId};
 
 use super::config::{Config, named};
 use crate::found::Found;
-use crate::ini::{Item, last};
+use crate::ini::{Item, first};
 use crate::text::Log;
 
 /// Axes that M6 moves by itself.
 pub(super) fn tool_change(config: &Config<'_>, found: &mut Found, log: &mut Log) {
     let set = |key: &str| {
-        let item = last(&config.items, "EMCIO", key)?;
+        let item = first(&config.items, "EMCIO", key)?;
         let off = ["0", "NO", "FALSE", "OFF"];
         let off = off.iter().any(|off| item.value.eq_ignore_ascii_case(off));
         (!off && !item.value.is_empty()).then_some(item)
@@ -68,7 +68,7 @@ pub(super) fn tool_change(config: &Config<'_>, found: &mut Found, log: &mut Log)
 
 /// A value that is not empty.
 fn set_text<'c, 'j>(config: &'c Config<'j>, key: &str) -> Option<&'c Item<'j>> {
-    last(&config.items, "EMCIO", key).filter(|item| !item.value.is_empty())
+    first(&config.items, "EMCIO", key).filter(|item| !item.value.is_empty())
 }
 
 /// Words that the builder of the machine has put in place of the interpreter's, or added.

@@ -2,8 +2,17 @@
 
 use super::hal::Hal;
 use crate::found::Figure;
-use crate::ini::{Item, last};
+use crate::ini::{Item, first};
 use crate::text::Log;
+
+/// Seconds of a minute, millimetres of an inch.
+pub(super) const MIN: f64 = 60.0;
+pub(super) const INCH: f64 = 25.4;
+
+/// A section alone, as [`Config::positive`] takes it.
+pub(super) fn section(name: &str) -> Vec<String> {
+    vec![name.to_owned()]
+}
 
 /// The values, and how many millimetres and degrees a unit of the machine has.
 pub(super) struct Config<'j> {
@@ -17,7 +26,7 @@ impl Config<'_> {
     pub(super) fn item(&self, sections: &[String], key: &str) -> Option<&Item<'_>> {
         sections
             .iter()
-            .find_map(|section| last(&self.items, section, key))
+            .find_map(|section| first(&self.items, section, key))
     }
 
     pub(super) fn positive(

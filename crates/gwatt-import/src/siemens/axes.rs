@@ -123,16 +123,19 @@ impl<'t> Axis<'_, 't> {
     }
 
     fn value<'a>(&'a self, name: &'a str) -> Option<&'a Datum<'t>> {
-        self.data.of(name).find(|datum| self.is_of(datum))
+        // By its number or its name: the last counts.
+        self.data.of(name).filter(|datum| self.is_of(datum)).last()
     }
 
     /// All entries, by their number.
     fn figures(&self, name: &str, log: &mut Log, factor: f64) -> Vec<(usize, Figure)> {
-        let mut list = Vec::new();
+        let mut list: Vec<(usize, Figure)> = Vec::new();
         for datum in self.data.of(name).filter(|datum| self.is_of(datum)) {
             if let Some(value) = log.number(&datum.place, datum.text) {
                 let figure = Figure::new(value * factor, datum.source());
-                list.push((datum.number().unwrap_or(0), figure));
+                let number = datum.number().unwrap_or(0);
+                list.retain(|(other, _)| *other != number);
+                list.push((number, figure));
             }
         }
         list
@@ -170,6 +173,7 @@ fn one(axis: &Axis<'_, '_>, found: &mut Found, log: &mut Log, id: AxisId) -> Opt
     let rapid = axis.positive("MAX_AX_VELO", log, length);
     let accels = axis.figures("MAX_AX_ACCEL", log, unit);
     let factors = [
+        axis.figures("G00_ACCEL_FACTOR", log, 1.0),
         axis.figures("G0_ACCEL_FACTOR", log, 1.0),
         axis.figures("SOFT_ACCEL_FACTOR", log, 1.0),
     ];

@@ -1,5 +1,7 @@
 //! Machine data by name, with their indices.
 
+use std::collections::BTreeMap;
+
 use crate::near::Job;
 use crate::text::Place;
 
@@ -24,6 +26,14 @@ impl Datum<'_> {
     /// The last part of the index: the axis, or a number.
     pub(crate) fn axis(&self) -> &str {
         self.index.rsplit(',').next().unwrap_or("").trim()
+    }
+
+    /// What is the same in lines for the same value. Data of channels are those of each.
+    fn key(&self) -> (String, &str, u32) {
+        let of_channel = self.whole.contains("$MC_") || self.whole.contains("$SC_");
+        let index = self.index.split_whitespace().collect::<String>();
+        let channel = if of_channel { self.channel } else { 0 };
+        (index.to_ascii_uppercase(), self.name, channel)
     }
 
     /// The first of two parts.
@@ -78,9 +88,9 @@ pub(crate) struct Data<'t> {
 }
 
 impl<'t> Data<'t> {
-    /// Reads all lines.
+    /// Reads all lines; of several for the same value the last counts, as in the control.
     pub(crate) fn new(job: &'t Job) -> Self {
-        let mut list = Vec::new();
+        let mut list: Vec<Datum<'t>> = Vec::new();
         let mut channel = 1;
         for (_, place) in job.places() {
             let text = place.line();
@@ -100,7 +110,20 @@ impl<'t> Data<'t> {
                 });
             }
         }
-        Self { list }
+        let mut last = BTreeMap::new();
+        for (at, datum) in list.iter().enumerate() {
+            last.insert(datum.key(), at);
+        }
+        let mut counts = vec![false; list.len()];
+        for at in last.into_values() {
+            if let Some(counts) = counts.get_mut(at) {
+                *counts = true;
+            }
+        }
+        let counting = list.into_iter().zip(counts).filter(|(_, counts)| *counts);
+        Self {
+            list: counting.map(|(datum, _)| datum).collect(),
+        }
     }
 
     /// All values of a name.

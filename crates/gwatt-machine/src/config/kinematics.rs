@@ -27,6 +27,14 @@ pub(crate) fn take(
     };
     let letters = pair.map(|id| char::from(id.letter()));
     let [Some(first), Some(second)] = pair.map(|id| axes[id as usize].as_ref()) else {
+        // What a table lacks is reported there.
+        let is_described = |id: &AxisId| {
+            let mut tables = file.axes.iter().flat_map(|axes| axes.value.iter());
+            tables.any(|(other, _)| other == *id)
+        };
+        if pair.iter().all(is_described) {
+            return kinematics;
+        }
         let message = format!(
             "the axes {} and {} share their motors",
             letters[0], letters[1]
