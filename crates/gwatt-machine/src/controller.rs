@@ -187,8 +187,7 @@ pub struct Dialect {
     pub point: Option<Point>,
     /// The machine file says so.
     pub point_is_known: bool,
-    /// Words of `G4` whose numbers without a point are in another unit, with
-    /// the seconds in one of it.
+    /// Words of `G4` whose whole numbers are in another unit, with the seconds in one of it.
     pub dwell_whole: Vec<(u8, f64)>,
     /// The G codes of a lathe.
     pub lathe: Option<Lathe>,
@@ -200,8 +199,7 @@ pub struct Dialect {
     pub other_m: bool,
     /// A `;` ends a block.
     pub semicolon_ends_block: bool,
-    /// Whether F is a feed per revolution at power-on; `None`: nobody says so, and it is per
-    /// minute, or a setting of the machine decides.
+    /// Whether F is per revolution at power-on; `None`: nobody says so, or a setting decides.
     pub per_revolution: Option<bool>,
     /// What ATAN and ASIN of macros give.
     pub inverse_angles: InverseAngles,
@@ -215,8 +213,7 @@ pub struct Dialect {
     pub circular_pocket: bool,
     /// G81 to G89 of a lathe all drill along Z, from the place R.
     pub holes_along_z: bool,
-    /// G87 of a mill bores and stops, and the operator takes the tool out; else it bores from
-    /// below.
+    /// G87 of a mill bores and stops for the operator; else it bores from below.
     pub bores_by_hand: bool,
     /// G28 without axes moves all of them.
     pub g28_all: bool,
@@ -244,8 +241,7 @@ impl Language {
         Some(format!("G{}", f64::from(number) / 10.0))
     }
 
-    /// A dwell as a block, and how long it lasts, s: at least `wanted_s`, in tenths of a
-    /// second.
+    /// A dwell of at least `wanted_s`, in tenths of a second, as a block, and its time, s.
     #[must_use]
     pub fn dwell_block(&self, wanted_s: f64) -> Option<(String, f64)> {
         let (letter, unit_s) = *self.dwell.first()?;
