@@ -48,6 +48,7 @@ mod waits;
 mod ways;
 mod whole;
 mod within;
+mod word_choice;
 mod words_by_axis;
 
 use gwatt::diagnostic::Diagnostic;

@@ -16,13 +16,17 @@ fn refused(controller: &str, program: &str) -> String {
 #[test]
 fn lines_with_a_dollar_belong_to_the_block_before_them() {
     for lathe in ["okuma", "okuma-lathe"] {
-        let header = "$PART.MIN%\nG0 X10\nM2\n";
-        assert_eq!(moves(lathe, header).lines().count(), 1, "{lathe}");
-        let found = refused(lathe, "G0 X10\n$ Z20\nM2\n");
-        assert!(
-            found.contains("belongs to the block before it"),
-            "{lathe} {found}"
-        );
+        for header in ["$PART.MIN%", "$PART-2.SSB", "$PART.MIN% (FIRST SIDE)"] {
+            let found = moves(lathe, &format!("{header}\nG0 X10\nM2\n"));
+            assert_eq!(found.lines().count(), 1, "{header} {found}");
+        }
+        for line in ["$ Z20", "$Z20.5", "$ Z20%", "$Z1.5 (A%"] {
+            let found = refused(lathe, &format!("G0 X10\n{line}\nM2\n"));
+            assert!(
+                found.contains("belongs to the block before it"),
+                "{lathe} {found}"
+            );
+        }
     }
 }
 
@@ -75,9 +79,14 @@ fn m16_changes_the_tool_of_a_haas() {
     let after = |word: &str| moves("haas", &format!("G0 Z-50.\nT1 {word}\nX10.\nM30\n"));
     assert_eq!(after("M16"), after("M6"));
     assert_ne!(after("M16"), after("M17"));
+    // What the machine file says of the word holds.
+    let more = "[language]\nunknown_moves = [\"M16\"]\n";
+    let machine = machine_of("haas", more, "XYZ", "AC");
+    let found = listing("G0 Z-50.\nT1 M16\nX10.\nM30\n", &machine, None);
+    assert_ne!(found, after("M16"));
 }
 
-/// Only on LinuxCNC P of an arc is how many turns it begins.
+/// On LinuxCNC and grbl alone P of an arc is how many turns it begins.
 #[test]
 fn arcs_have_no_turns_on_others() {
     let program = "G1 X10. F500.\nG2 X0 I-5. P2\nM30\n";
@@ -85,7 +94,7 @@ fn arcs_have_no_turns_on_others() {
     assert!(two.contains("turns -1.5"), "{two}");
     for controller in ["haas", "mazak", "mitsubishi", "syntec", "fanuc"] {
         let found = refused(controller, program);
-        assert!(found.contains('P'), "{controller} {found}");
+        assert!(found.contains("uses the P word"), "{controller} {found}");
     }
 }
 
@@ -95,8 +104,12 @@ fn m97_calls_on_haas_alone() {
     let program = "G0 X0.\nM97 P50\nX5.\nM30\nN50 X1.\nM99\n";
     assert_eq!(moves("haas", program).lines().count(), 3);
     for controller in ["syntec", "mitsubishi", "mazak", "fanuc"] {
-        let found = moves(controller, program);
-        assert!(!found.contains("X1"), "{controller} {found}");
+        let found = refused(controller, program);
+        assert!(
+            found.contains("calls nothing on this control"),
+            "{controller} {found}"
+        );
+        assert_eq!(moves(controller, "G0 X2.\nM97\n"), "1 rapid X2\n");
     }
 }
 
@@ -123,16 +136,20 @@ fn times_without_a_point_count_as_lengths() {
     }
     assert_eq!(dwell("mitsubishi", "", "P12.5"), seconds("0.0125"));
     assert_eq!(dwell("iso", "", "P500"), seconds("0.5"));
+    let drilled = moves("mitsubishi", "G0 X1.\nG82 X2. Z-1. R0. P500. F100.\nG80\n");
+    assert!(drilled.contains("dwell 0.5 s"), "{drilled}");
 }
 
 /// A macro of Syntec's own language divides whole numbers and has variables of its own.
 #[test]
 fn macros_of_syntec_are_refused() {
     let shop = Shop::straight("syntec", 9000.0);
-    shop.put("a.nc", "%@MACRO\n#1=7;\nG0 X[#1/2];\nM30;\n");
-    let (code, _, errors) = shop.run("check a.nc");
-    assert_eq!(code, 2, "{errors}");
-    assert!(errors.contains("a macro of a Syntec control"), "{errors}");
+    for head in ["%@MACRO", "% @macro", "\u{feff}%@MACRO"] {
+        shop.put("a.nc", &format!("{head}\n#1=7;\nG0 X[#1/2];\nM30;\n"));
+        let (code, _, errors) = shop.run("check a.nc");
+        assert_eq!(code, 2, "{head} {errors}");
+        assert!(errors.contains("a macro of a Syntec control"), "{errors}");
+    }
 }
 
 /// grbl puts G1 in force at M30: what moves in the same block runs by the word before.

@@ -83,6 +83,8 @@ struct Sight {
     mm_per_unit_before: f64,
     fixed: Option<&'static str>,
     no_motion_word: bool,
+    /// Rapids may not be written as feeds.
+    rapids_stay: bool,
 }
 
 impl Table {
@@ -153,6 +155,7 @@ impl Table {
             mm_per_unit_before: entry.mm_per_unit_before,
             fixed: entry.facts.kept(),
             no_motion_word: facts.no_motion_word,
+            rapids_stay: facts.rapids_stay(),
         };
         if let Some(entered) = self.lines.get_mut(&line) {
             entered.one_corner &= entered.sight.corner == sight.corner;

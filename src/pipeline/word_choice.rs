@@ -31,8 +31,13 @@ pub(super) fn with_words(
             unverified: false,
             ..how.allowed
         };
-        let mut without = with_share(machine, LimitOptions { allowed, ..how }, chooses, run)?;
-        if without.certified {
+        let without = with_share(machine, LimitOptions { allowed, ..how }, chooses, run);
+        // A strategy may need these words.
+        let without = match without {
+            Err(Failure::Unsuitable(_)) => None,
+            found => Some(found?).filter(|it| it.certified),
+        };
+        if let Some(mut without) = without {
             let message = "--allow unverified: the program fits without the words that it permits, \
                            and was not found to fit with them: they are not written";
             let note = Diagnostic::note("unverified", message.to_owned());

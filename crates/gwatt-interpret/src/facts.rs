@@ -126,6 +126,12 @@ impl Facts {
         self.fixed.or(self.own_feed)
     }
 
+    /// Whether a rapid of the block would do something else as a feed.
+    #[must_use]
+    pub fn rapids_stay(&self) -> bool {
+        self.beam_is_lit || self.feeds_are_rounded || self.rapids_may_be_slower
+    }
+
     /// Whether its moves are the firmware's own.
     #[must_use]
     pub fn moves_by_firmware(&self) -> bool {

@@ -117,17 +117,20 @@ impl Control<'_> {
         for index in 0..run.words.m.len() {
             let (number, span) = run.words.m[index];
             let value = f64::from(number) / 10.0;
-            self.switch_loads(value);
+            // As it is written: on some controls two words change the tool.
+            let mut words = run.block.words.iter();
+            let written = words.find(|word| word.span == span);
+            self.switch_loads(written.map_or(value, |word| word.value));
             self.switches.switch(number);
-            if self.rules.cycle_levels_by_m && self.osp_m_word(number, span, run) {
-                continue;
-            }
             run.facts.announces_tap |= number == RIGID && self.motion_survives_cycles();
             if self.moves_of_itself(b'M', number) {
                 if number == 60 {
                     self.load_tool(number, span, run);
                 }
                 self.builder_moves(number, span, run);
+                continue;
+            }
+            if self.rules.cycle_levels_by_m && self.osp_m_word(number, span, run) {
                 continue;
             }
             if self.state_word(number, span, run) {

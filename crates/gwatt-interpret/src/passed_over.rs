@@ -7,6 +7,15 @@ use super::report::Report;
 use gwatt_syntax::Block;
 use gwatt_syntax::source::Span;
 
+/// Whether a tape mark names a macro of Syntec's own language.
+fn begins_macro(text: &[u8]) -> bool {
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let after = text.trim_ascii_start().strip_prefix(b"%");
+    let name = after.map(<[u8]>::trim_ascii_start);
+    name.and_then(|name| name.get(..6))
+        .is_some_and(|name| name.eq_ignore_ascii_case(b"@MACRO"))
+}
+
 impl Control<'_> {
     /// Whether the block is deleted, a tape mark, after the end, or refused.
     pub(super) fn passes_over(&mut self, block: &Block, report: &mut Report<'_, '_>) -> bool {
@@ -41,7 +50,7 @@ impl Control<'_> {
         }
         if block.tape {
             self.meet_head(report);
-            if report.text.starts_with(b"%@MACRO") {
+            if begins_macro(report.text) {
                 let message = "a macro of a Syntec control: its numbers and variables are not \
                                those of ISO programs";
                 report

@@ -223,7 +223,10 @@ impl Control<'_> {
             let dialect = &language.dialect;
             let own = dialect.dwell_whole.iter().find(|(name, _)| name == letter);
             let unit = own.filter(|_| whole).map_or(*unit, |(_, unit)| *unit);
-            let fine = whole && matches!(letter, b'X' | b'U') && self.counts_least(span, run);
+            let fine = whole
+                && own.is_none()
+                && matches!(letter, b'X' | b'U')
+                && self.counts_least(span, run);
             seconds = Some(value * if fine { unit * LEAST_S } else { unit });
         }
         match seconds {

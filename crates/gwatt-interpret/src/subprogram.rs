@@ -61,9 +61,8 @@ impl Control<'_> {
                 .help("write M98 and M99 in blocks of their own");
             return true;
         }
-        // On other controls it ends the interrupt of M96.
-        if number == 970 && !self.dialect().m97_calls {
-            return false;
+        if number == 970 && macros == Macros::MacroB && !self.dialect().m97_calls {
+            return Self::ends_interrupt(span, run);
         }
         match (macros, number) {
             // M198 calls a program that stands in another memory.
@@ -84,6 +83,18 @@ impl Control<'_> {
         }
         run.facts.fixed = Some("it calls a subprogram or returns from one");
         true
+    }
+
+    /// M97 where it is no call: alone it ends the interrupt of M96, which is left to others; with
+    /// P it is refused.
+    fn ends_interrupt(span: Span, run: &mut Run<'_, '_>) -> bool {
+        let calls = run.block.words.iter().any(|word| word.letter == b'P');
+        if calls {
+            run.report
+                .error("subprogram", "M97 P calls nothing on this control", span)
+                .help("write a subprogram and M98");
+        }
+        calls
     }
 
     /// The call of M97, M98 and M198.

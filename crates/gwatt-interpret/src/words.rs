@@ -275,7 +275,10 @@ impl Words {
             );
             return;
         };
-        if number == 160 && controller.language.dialect.m16_changes_tool {
+        let language = &controller.language;
+        let described =
+            language.unknown_moves.contains(&(b'M', number)) || language.ignored_m.contains(&16);
+        if number == 160 && language.dialect.m16_changes_tool && !described {
             number = 60;
         }
         if self.m.try_push((number, word.span)).is_err() {

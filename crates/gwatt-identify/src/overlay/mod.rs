@@ -25,8 +25,8 @@ use crate::peak_factor::PeakFactor;
 use align::align;
 use meter::{INSTANT, correlation, shown};
 use refined::refined;
-use tops::Model;
 use std::ops::RangeInclusive;
+use tops::Model;
 
 /// Correlation from which on the log is that of the program.
 const SAME: f64 = 0.7;

@@ -220,8 +220,10 @@ impl Control<'_> {
         let own = run.words.take(b'P');
         if let (Some(value), Some(word)) = (own, word) {
             let point = word.number.of(run.report.text).contains(&b'.');
+            let mut dwell = self.machine.controller.language.dwell.iter();
+            let with_point = dwell.find(|(letter, _)| *letter == b'P');
             let unit_s = if point {
-                1.0
+                with_point.map_or(1.0, |(_, unit_s)| *unit_s)
             } else {
                 self.rules.whole_cycle_dwell_s
             };

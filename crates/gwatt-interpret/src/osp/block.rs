@@ -133,11 +133,20 @@ impl Reading<'_, '_> {
         Ok(go)
     }
 
-    /// `$NAME.MIN%`: the header of the file. Other lines with a dollar sign belong to the block
+    /// `$NAME.MIN%`: the header of a file. Other lines with a dollar sign belong to the block
     /// before them.
     fn header(&self) -> Outcome<Option<Go>> {
-        let is_header = self.cursor.text.trim_ascii_end().ends_with(b"%");
-        if is_header {
+        let text = self.cursor.text.trim_ascii_start();
+        let mut parts = text
+            .get(1..)
+            .unwrap_or_default()
+            .split(|byte| *byte == b'.');
+        let in_name = |byte: &u8| byte.is_ascii_alphanumeric() || b"-_".contains(byte);
+        let name = parts.next().unwrap_or_default();
+        // MIN, SSB, SUB: three letters, and no number as the value of a word has it.
+        let kind = parts.next().unwrap_or_default();
+        let letters = kind.iter().take_while(|byte| byte.is_ascii_alphabetic());
+        if name.iter().all(in_name) && !name.is_empty() && letters.count() == 3 {
             return Ok(None);
         }
         let message = "a line that begins with $ belongs to the block before it, which is not \

@@ -69,7 +69,7 @@ impl Control<'_> {
                 "write CALL O… and RTS",
             ),
             // "C-axis positioning in positive / negative direction".
-            150 | 160 => (
+            150 | 160 if !self.is_ignored(number) => (
                 "M15 and M16 choose the direction in which a rotary axis turns, which is not \
                  followed",
                 "take the word out if the axis turns the short way, or write the way as G91",
