@@ -263,6 +263,9 @@ pub fn flexible(axis: &Flexible) -> Judgement {
     if leaves_more_than_noise(axis) {
         return Judgement::MoreThanNoise;
     }
+    if let Some(change) = axis.change {
+        return Judgement::Changed { by: change.value };
+    }
     if !axis.has_errors {
         return Judgement::NoErrors;
     }

@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use gwatt_identify::flexible::Method;
-use gwatt_identify::{Quantity, Recording};
+use gwatt_identify::{Judgement, Quantity, Recording, judgement, rigid};
 
 use crate::miswritten::{Columns, Outcome, flexible_outcome, line, outcomes, rigid_outcome};
 use crate::simulated::{Axis, Motion, PERIOD_S, Random, wanted};
@@ -297,4 +297,31 @@ fn what_happens_to_an_axis_is_not_good() {
         }
     }
     assert_eq!(misled, 0);
+}
+
+/// A third more mass after 40 % of the recording, by a rigid and by a flexible model.
+#[test]
+fn a_workpiece_that_is_put_on_is_seen() {
+    let happens = Happens {
+        within: [0.4, 1.0],
+        mass: 0.33,
+        ..Happens::default()
+    };
+    let mut random = Random(3);
+    let drive = Drive::shaken(&mut random);
+    let seen = [Quantity::Velocity];
+    let (recording, truth) = recorded(&drive, happens, &seen, &mut random);
+    let by_iv = flexible_outcome(&recording, Method::Iv, truth);
+    assert_eq!(by_iv.word, "changed meanwhile");
+    let found = rigid::fit_all(&[recording], None, None).unwrap();
+    assert_eq!(judgement::rigid(&found).word(), "changed meanwhile");
+    // By the mass that suits all of it best, which is larger than the first.
+    let change = found.change.unwrap();
+    assert!(change.value > 0.2 && change.value < 0.33, "{change:?}");
+    assert_eq!(
+        Judgement::Changed { by: -0.25 }.to_string(),
+        "changed meanwhile: the mass differs by 25 % from one part of the recordings to the others; record one load of one axis at a time"
+    );
+    let (recording, truth) = recorded(&drive, Happens::default(), &seen, &mut random);
+    assert_eq!(rigid_outcome(recording, truth).word, "good");
 }

@@ -1,11 +1,13 @@
 //! Recordings of which a column is not what its name says: swapped, late, held, cut to pieces,
 //! counted in too few bits. None may be called good with a mass that is wrong.
 
+use std::fmt::Write as _;
 use std::thread;
 
 use gwatt_identify::flexible::{self, Choice, Method};
 use gwatt_identify::{
-    Figure, Given, Kind, Measured, Quantity, Recording, Signal, judgement, rigid, simulate,
+    Figure, Given, Judgement, Kind, Measured, Quantity, Recording, Signal, judgement, rigid,
+    simulate,
 };
 
 use crate::simulated::{PERIOD_S, Random, plant, wanted};
@@ -187,13 +189,13 @@ const WRONG: &[Kinds] = &[
         it.position.clone_from(&it.velocity);
     }),
     ("force after a lag", ANY, |it, random| {
-        lagged(&mut it.force, random.uniform(2.0, 10.0))
+        lagged(&mut it.force, random.uniform(2.0, 10.0));
     }),
     ("force late", ANY, |it, random| {
-        late(&mut it.force, random.uniform(2.0, 11.0))
+        late(&mut it.force, random.uniform(2.0, 11.0));
     }),
     ("force early, as set", ANY, |it, random| {
-        early(&mut it.force, random.uniform(2.0, 11.0))
+        early(&mut it.force, random.uniform(2.0, 11.0));
     }),
     (
         "speed after a lag",
@@ -336,25 +338,35 @@ fn rms(x: &[f64]) -> f64 {
     (x.iter().map(|x| x * x).sum::<f64>() / x.len() as f64).sqrt()
 }
 
+fn summed(x: &[f64]) -> Vec<f64> {
+    let mut sum = 0.0;
+    let each = x.iter().map(|x| {
+        sum += PERIOD_S * x;
+        sum
+    });
+    each.collect()
+}
+
 fn as_flexible(kind: &Kinds, method: Method, random: &mut Random) -> Outcome {
     let plant = plant(random);
     let force = sweep::torque(8000, random);
+    // Of a speed or position differences are simulated.
     let moved = |measured| simulate(&plant, measured, PERIOD_S, &force).unwrap();
     let mut columns = Columns {
-        position: moved(Measured::Position),
-        velocity: moved(Measured::Velocity),
+        position: summed(&summed(&moved(Measured::Position))),
+        velocity: summed(&moved(Measured::Velocity)),
         acceleration: moved(Measured::Direct),
         force,
     };
     let noise = [
         1e-9,
-        1e-7 * rms(&columns.position),
+        1e-6 * rms(&columns.position),
         1e-4 * rms(&columns.velocity),
         0.03 * rms(&columns.acceleration),
     ];
     (kind.2)(&mut columns, random);
     let mut choices = vec![kind.1[random.uniform(0.0, kind.1.len() as f64) as usize]];
-    if kind.1.len() > 1 {
+    if kind.1 == ANY {
         choices.push(&[Acceleration]);
     }
     let seen = choices[random.uniform(0.0, choices.len() as f64) as usize];
@@ -425,4 +437,70 @@ fn columns_that_are_something_else_are_not_good() {
         }
     }
     assert_eq!(misled, 0);
+}
+
+/// A force after a lag of 6 ms on a plain axis.
+#[test]
+fn a_force_that_is_late_is_out_of_step() {
+    let mut random = Random(5);
+    let (mut columns, truth) = rigid_columns(&mut random);
+    lagged(&mut columns.force, 6.0);
+    let recording = columns.recorded(&[Position], [1.0, 1e-6, 0.0, 0.0], &mut random);
+    let found = rigid::fit_all(std::slice::from_ref(&recording), None, None).unwrap();
+    assert_eq!(rigid_outcome(recording, truth).word, "out of step");
+    // The other way round: forces act earlier than they were recorded.
+    let late_s = found.out_of_step_s.unwrap();
+    assert!((late_s.value + 6e-3).abs() < 1e-3, "{late_s:?}");
+    assert_eq!(found.lateness_s, None);
+    let of = |late_s| Judgement::OutOfStep { late_s }.to_string();
+    assert_eq!(
+        of(-0.006),
+        "out of step: the force belongs to motion 6.0 ms earlier, more than a drive that samples makes of it; record the actual force and motion at the same time, without filters"
+    );
+    assert_eq!(of(0.006), of(-0.006).replace("earlier", "later"));
+}
+
+/// What no recording shows: half of the force gives half of the mass, and all else is as it was.
+#[test]
+fn a_scale_of_the_force_is_not_seen() {
+    let mut random = Random(8);
+    let (mut columns, [mass, _]) = rigid_columns(&mut random);
+    columns.force.iter_mut().for_each(|force| *force *= 0.5);
+    let recording = columns.recorded(&[Position], [1.0, 1e-6, 0.0, 0.0], &mut random);
+    let found = rigid::fit_all(&[recording], None, None).unwrap();
+    assert_eq!(judgement::rigid(&found).word(), "good");
+    assert!(
+        (found.mass.value / mass - 0.5).abs() < 0.01,
+        "{:?}",
+        found.mass
+    );
+}
+
+/// Times that are written with too few digits: they repeat, or leave samples out.
+#[test]
+fn times_of_too_few_digits_do_not_mislead() {
+    let mut random = Random(9);
+    let (columns, truth) = rigid_columns(&mut random);
+    let read = |period_s: f64, digit_s: f64| {
+        let mut table = String::from("time_s,force_n,position_m\n");
+        for (k, (force, x)) in columns.force.iter().zip(&columns.position).enumerate() {
+            let time_s = digit_s * libm::round(k as f64 * period_s / digit_s);
+            let _ = writeln!(table, "{time_s:.6},{force:.3},{x:.6}");
+        }
+        Recording::read(table.as_bytes(), None)
+    };
+    for (period_s, digit_s) in [(1e-3, 2e-3), (1e-3, 0.01), (2.5e-4, 1e-3)] {
+        let trouble = read(period_s, digit_s).unwrap_err().message;
+        assert!(trouble.contains("the time "), "{trouble}");
+    }
+    for period_s in [1.25e-3, 1.5e-3] {
+        let trouble = read(period_s, 1e-3).unwrap_err().message;
+        assert!(trouble.starts_with("sampling is uneven"), "{trouble}");
+    }
+    // One sample of two hundred seems to be missing.
+    let recording = read(1.005e-3, 1e-3).unwrap();
+    let times = 1.005_f64;
+    let [mass, viscous] = truth;
+    let outcome = rigid_outcome(recording, [mass * times * times, viscous * times]);
+    assert!(!outcome.misleads(), "{}", outcome.word);
 }
