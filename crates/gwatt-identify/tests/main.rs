@@ -16,3 +16,4 @@ mod sweep;
 mod swinging;
 mod tuned;
 mod units;
+mod written_times;

@@ -1,7 +1,6 @@
 //! Recordings of which a column is not what its name says: swapped, late, held, cut to pieces,
 //! counted in too few bits. None may be called good with a mass that is wrong.
 
-use std::fmt::Write as _;
 use std::thread;
 
 use gwatt_identify::flexible::{self, Choice, Method};
@@ -276,7 +275,7 @@ const WRONG: &[Kinds] = &[
     }),
 ];
 
-fn rigid_columns(random: &mut Random) -> (Columns, [f64; 2]) {
+pub(crate) fn rigid_columns(random: &mut Random) -> (Columns, [f64; 2]) {
     let (axis, motion) = (sweep::axis(random), sweep::motion(random));
     let columns = Columns {
         force: axis.force(&motion),
@@ -474,33 +473,4 @@ fn a_scale_of_the_force_is_not_seen() {
         "{:?}",
         found.mass
     );
-}
-
-/// Times that are written with too few digits: they repeat, or leave samples out.
-#[test]
-fn times_of_too_few_digits_do_not_mislead() {
-    let mut random = Random(9);
-    let (columns, truth) = rigid_columns(&mut random);
-    let read = |period_s: f64, digit_s: f64| {
-        let mut table = String::from("time_s,force_n,position_m\n");
-        for (k, (force, x)) in columns.force.iter().zip(&columns.position).enumerate() {
-            let time_s = digit_s * libm::round(k as f64 * period_s / digit_s);
-            let _ = writeln!(table, "{time_s:.6},{force:.3},{x:.6}");
-        }
-        Recording::read(table.as_bytes(), None)
-    };
-    for (period_s, digit_s) in [(1e-3, 2e-3), (1e-3, 0.01), (2.5e-4, 1e-3)] {
-        let trouble = read(period_s, digit_s).unwrap_err().message;
-        assert!(trouble.contains("the time "), "{trouble}");
-    }
-    for period_s in [1.25e-3, 1.5e-3] {
-        let trouble = read(period_s, 1e-3).unwrap_err().message;
-        assert!(trouble.starts_with("sampling is uneven"), "{trouble}");
-    }
-    // One sample of two hundred seems to be missing.
-    let recording = read(1.005e-3, 1e-3).unwrap();
-    let times = 1.005_f64;
-    let [mass, viscous] = truth;
-    let outcome = rigid_outcome(recording, [mass * times * times, viscous * times]);
-    assert!(!outcome.misleads(), "{}", outcome.word);
 }
