@@ -123,6 +123,12 @@ pub fn rigid_json(heading: &Heading, rigid: &Rigid, out: &mut dyn Write) -> io::
     if rigid.lateness_s.is_some() {
         insert(&mut map, "force_late_s", rigid.lateness_s);
     }
+    if rigid.out_of_step_s.is_some() {
+        insert(&mut map, "force_out_of_step_s", rigid.out_of_step_s);
+    }
+    if rigid.change.is_some() {
+        insert(&mut map, "mass_change", rigid.change);
+    }
     map.insert("effects".into(), effects_json(rigid));
     map.insert("saturation".into(), saturation_json(rigid));
     judged(&mut map, judgement::rigid(rigid));
@@ -148,6 +154,9 @@ pub fn flexible_json(
     insert(&mut map, coulomb, axis.coulomb);
     map.insert("gain".into(), number(Some(axis.transfer.gain)));
     map.insert("rel_error".into(), number(Some(axis.rel_error)));
+    if axis.change.is_some() {
+        insert(&mut map, "mass_change", axis.change);
+    }
     map.insert("zeros".into(), axis.zeros.iter().map(root).collect());
     map.insert(
         "unclear_zeros".into(),

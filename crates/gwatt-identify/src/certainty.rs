@@ -34,6 +34,8 @@ pub const MISSED_ENERGY: f64 = 4.0;
 pub const MISSED_SELDOM: f64 = 1e-4;
 /// Standard errors from which on a force acts later than it was recorded.
 pub const LATENESS: f64 = 4.0;
+/// Standard errors from which on a mass is another one than before; seven places are tried.
+pub const CHANGE: f64 = 5.0;
 /// Standard errors from which on a delay is worth advice: it costs little to follow.
 pub const DELAY_ADVICE: f64 = 2.0;
 /// Standard deviations by which the shoulder of a dip stands out of the noise.

@@ -76,6 +76,9 @@ pub struct Flexible {
     /// The energy of that in units of the noise, where it is more than chance: standard
     /// errors are wider by its root.
     pub missed_energy: f64,
+    /// By which share of it the inertia differs from one part of the recording to the others,
+    /// where it does.
+    pub change: Option<Figure>,
     /// Whiteness of the squares of what is left: noise of one strength has it, what comes
     /// and goes with the motion has not.
     pub steadiness: Whiteness,
@@ -385,6 +388,7 @@ fn describe(
         whiteness: Whiteness::of(&left.white, LAGS),
         missed_share: left.missed_share,
         missed_energy: left.missed_energy,
+        change: left.change,
         steadiness: Whiteness::of(&squares, LAGS),
         noise_order: found.noise.taps.len(),
         leak: found.noise.leak,

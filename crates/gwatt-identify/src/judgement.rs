@@ -36,6 +36,16 @@ pub enum Judgement {
     Stribeck,
     /// The force that moves the axis ends at a value, and the recorded one is another.
     Saturated,
+    /// The mass is another one in a part of the recordings.
+    Changed {
+        /// By which share of the mass.
+        by: f64,
+    },
+    /// Force and motion belong to different times.
+    OutOfStep {
+        /// By how much later than recorded the force acts, s.
+        late_s: f64,
+    },
     /// What is left is more than noise, and too much of the whole.
     MoreThanNoise,
     /// The method gives no standard errors.
@@ -59,6 +69,8 @@ impl Judgement {
             Self::Backlash => "backlash",
             Self::Stribeck => "Stribeck friction",
             Self::Saturated => "saturated",
+            Self::Changed { .. } => "changed meanwhile",
+            Self::OutOfStep { .. } => "out of step",
             Self::MoreThanNoise => "more than noise is left",
             Self::NoErrors => "no standard errors",
             Self::DoesNotFit => "the model does not fit",
@@ -96,6 +108,17 @@ impl fmt::Display for Judgement {
             ),
             Self::Saturated => f.write_str(
                 "saturated: the force ends at a value, and the motion does not go with what was recorded; record with a smaller amplitude, or the force that the drive gives",
+            ),
+            Self::Changed { by } => write!(
+                f,
+                "changed meanwhile: the mass differs by {:.0} % from one part of the recordings to the others; record one load of one axis at a time",
+                100.0 * by.abs()
+            ),
+            Self::OutOfStep { late_s } => write!(
+                f,
+                "out of step: the force belongs to motion {:.1} ms {}, more than a drive that samples makes of it; record the actual force and motion at the same time, without filters",
+                1e3 * late_s.abs(),
+                if *late_s > 0.0 { "later" } else { "earlier" }
             ),
             Self::MoreThanNoise => f.write_str(
                 "more than noise is left: the model misses something, such as friction, cogging, backlash or another mode",
@@ -184,6 +207,12 @@ pub fn rigid(axis: &Rigid) -> Judgement {
     if axis.rel_error > MISSED.max(NOISY * axis.noise_share) {
         return Judgement::MoreThanNoise;
     }
+    if let Some(change) = axis.change {
+        return Judgement::Changed { by: change.value };
+    }
+    if let Some(late) = axis.out_of_step_s {
+        return Judgement::OutOfStep { late_s: late.value };
+    }
     let mut times = excess(axis.mass, MASS);
     if let Some(coulomb) = axis.coulomb {
         // Friction near zero is known well enough when it is known as small.
@@ -233,6 +262,9 @@ pub fn flexible(axis: &Flexible) -> Judgement {
     }
     if leaves_more_than_noise(axis) {
         return Judgement::MoreThanNoise;
+    }
+    if let Some(change) = axis.change {
+        return Judgement::Changed { by: change.value };
     }
     if !axis.has_errors {
         return Judgement::NoErrors;

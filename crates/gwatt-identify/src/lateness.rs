@@ -19,8 +19,41 @@ const BETTER: f64 = 0.02;
 /// Rounds: the second sees what the first, by slopes, left.
 const ROUNDS: usize = 2;
 
+/// How much of the mass, or of viscous friction, a lateness changes that is more than little.
+const OTHER_MASS: f64 = 0.01;
+const OTHER_FRICTION: f64 = 0.1;
+
+/// By how much forces act later than recorded, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Late {
+    /// Not, as far as the recordings show.
+    Not,
+    /// So much, as a drive that samples makes of it.
+    By(Figure),
+    /// More than that.
+    OutOfStep(Figure),
+}
+
+impl Late {
+    /// By how much forces were taken later.
+    pub(super) fn by_s(self) -> Option<Figure> {
+        match self {
+            Self::By(figure) => Some(figure),
+            Self::Not | Self::OutOfStep(_) => None,
+        }
+    }
+
+    /// By how much they are too late or too early.
+    pub(super) fn out_of_step_s(self) -> Option<Figure> {
+        match self {
+            Self::OutOfStep(figure) => Some(figure),
+            Self::Not | Self::By(_) => None,
+        }
+    }
+}
+
 /// What was found, and by how much forces act later than recorded.
-type Fitted = (Found, Option<Figure>);
+type Fitted = (Found, Late);
 
 /// How the force changes with time where it accelerates, but for the mass.
 fn jerk(equations: &Equations) -> Vec<f64> {
@@ -84,21 +117,22 @@ pub(super) fn delay(equations: &mut Equations, by_s: f64) {
 /// is no more than a drive that samples takes. Effects that the recordings have are part of both.
 pub(super) fn fitted(all: &[Equations], asked: Option<Friction>, solved: &Solved) -> Fitted {
     let found = effects::found(all, asked, solved);
-    match late(all, asked, &found) {
-        Some((mut late, lateness_s)) => {
+    let (late, by) = late(all, asked, &found);
+    match (late, by) {
+        (Some(mut late), Late::By(lateness_s)) => {
             widen(&late.all, &mut late.solved, lateness_s);
-            (late, Some(lateness_s))
+            (late, by)
         }
-        None => (found, None),
+        _ => (found, by),
     }
 }
 
-fn late(all: &[Equations], asked: Option<Friction>, found: &Found) -> Option<(Found, Figure)> {
+fn late(all: &[Equations], asked: Option<Friction>, found: &Found) -> (Option<Found>, Late) {
     // Without a speed viscous friction would pass for it; a force that stands at its largest
     // value is looked at sample by sample.
     let is_plain = |it: &Equations| it.inside.speeds.is_some() && it.raw.cut_off.is_none();
     if found.saturation.is_some() || !all.iter().all(is_plain) {
-        return None;
+        return (None, Late::Not);
     }
     let periods = all.iter().map(|it| it.raw.period_s);
     let most_s = SAMPLES * periods.fold(f64::INFINITY, f64::min);
@@ -108,31 +142,72 @@ fn late(all: &[Equations], asked: Option<Friction>, found: &Found) -> Option<(Fo
             Some((late, lateness_s)) => (late, lateness_s.value),
             None => (found, 0.0),
         };
-        let terms = now.solved.terms;
-        let wider = with_jerk(&now.all);
-        let by = by_slope(&wider, terms)?;
-        let predicts = || {
-            let before = predicted(&now.all, terms, 1)?;
-            Some(predicted(&wider, terms, 1)? < (1.0 - BETTER) * before)
+        let Some(by) = further(now, late.is_none()) else {
+            return (None, Late::Not);
         };
-        if late.is_none() && !(by.value.abs() > certainty::LATENESS * by.std && predicts()?) {
-            return None;
-        }
         let lateness_s = Figure {
             value: so_far_s + by.value,
             std: by.std,
         };
+        let Some((moved, solved)) = moved(all, asked, lateness_s.value) else {
+            return (None, Late::Not);
+        };
         if lateness_s.value.abs() > most_s {
-            return None;
+            let is_other = differ(&found.solved, &solved);
+            let is_late = if is_other {
+                Late::OutOfStep(lateness_s)
+            } else {
+                Late::Not
+            };
+            return (None, is_late);
         }
-        let mut moved = all.to_vec();
-        for equations in &mut moved {
-            delay(equations, lateness_s.value);
-        }
-        let solved = solve_best(&mut moved, asked)?;
         late = Some((effects::found(&moved, asked, &solved), lateness_s));
     }
-    late
+    late.map_or((None, Late::Not), |(late, by)| (Some(late), Late::By(by)))
+}
+
+/// By how much later than they are taken forces act; where it `must_show`, only if that is clear
+/// and predicts better.
+fn further(now: &Found, must_show: bool) -> Option<Figure> {
+    let terms = now.solved.terms;
+    let wider = with_jerk(&now.all);
+    let by = by_slope(&wider, terms)?;
+    let predicts = || {
+        let before = predicted(&now.all, terms, 1)?;
+        Some(predicted(&wider, terms, 1)? < (1.0 - BETTER) * before)
+    };
+    let shows = !must_show || by.value.abs() > certainty::LATENESS * by.std && predicts()?;
+    shows.then_some(by)
+}
+
+/// The equations with forces so much later, and their solution.
+fn moved(
+    all: &[Equations],
+    asked: Option<Friction>,
+    lateness_s: f64,
+) -> Option<(Vec<Equations>, Solved)> {
+    let mut moved = all.to_vec();
+    for equations in &mut moved {
+        delay(equations, lateness_s);
+    }
+    let solved = solve_best(&mut moved, asked)?;
+    Some((moved, solved))
+}
+
+/// Whether mass or viscous friction are others, for sure and by more than little.
+fn differ(one: &Solved, other: &Solved) -> bool {
+    let mass = |solved: &Solved| solved.theta.first().copied().unwrap_or_default();
+    let viscous = |solved: &Solved| {
+        let friction = solved.terms.friction_in(&solved.theta);
+        friction.map_or(0.0, |[viscous, _]| viscous)
+    };
+    let std = |at: usize| one.covariance[(at, at)].max(0.0).sqrt();
+    let is_other = |a: f64, b: f64, std: f64, share: f64| {
+        let apart = (a - b).abs();
+        apart > certainty::SIGN * std && apart > share * a.abs().max(b.abs())
+    };
+    is_other(mass(one), mass(other), std(0), OTHER_MASS)
+        || is_other(viscous(one), viscous(other), std(1), OTHER_FRICTION)
 }
 
 /// Widens the errors of a solution by what the lateness leaves unknown.

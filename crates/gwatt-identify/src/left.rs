@@ -1,8 +1,10 @@
 //! What a model leaves of a recording, and how much wider that makes standard errors.
 
 use super::chosen::filtered;
+use super::constancy::inertia_changes;
 use super::data::Data;
 use super::disturbance::as_it_is;
+use super::figure::Figure;
 use super::methods::{Estimator, Modelled};
 use super::missed::{missed_energy, peak_of_colour};
 use super::output_error::residuals;
@@ -32,6 +34,10 @@ pub(super) struct Left {
     pub(super) missed_share: f64,
     /// The energy of that, in units of the noise.
     pub(super) missed_energy: f64,
+    /// By which share the inertia is larger from some place on, where it is.
+    pub(super) change: Option<Figure>,
+    /// By how much the highest point of its spectrum exceeds the mean.
+    colour: f64,
 }
 
 impl Left {
@@ -49,10 +55,16 @@ impl Left {
             let plain = plain.and_then(|plain| residuals(data, &plain));
             rel_error = rel_error.min(plain.map_or(f64::MAX, |left| share(data, &left)));
         }
+        let white = filtered(&left, &found.noise.taps);
         let known = data.undisturbed.unwrap_or(compared.input);
         let known = known.get(data.skip()..).unwrap_or_default();
-        let white = filtered(&left, &found.noise.taps);
+        let colour = peak_of_colour(&white);
+        let output = compared.output.get(compared.skip()..).unwrap_or_default();
+        let modelled: Vec<f64> = output.iter().zip(&left).map(|(y, e)| y - e).collect();
+        let modelled = filtered(&modelled, &found.noise.taps);
         Self {
+            change: inertia_changes(&white, &modelled, colour),
+            colour,
             rel_error,
             missed_share: explained_share(known, &left, data.period_s),
             missed_energy: missed_energy(known, &white, data.period_s),
@@ -65,7 +77,7 @@ impl Left {
         let colour = if method.knows_colour() {
             1.0
         } else {
-            peak_of_colour(&self.white)
+            self.colour
         };
         let wider = colour + self.missed_energy / (AT_MOST * AT_MOST);
         found.estimate.covariance *= wider;

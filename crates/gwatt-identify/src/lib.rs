@@ -31,6 +31,7 @@ mod choice;
 mod column;
 mod column_map;
 mod command_input;
+mod constancy;
 mod creeping;
 mod data;
 mod delay_profile;

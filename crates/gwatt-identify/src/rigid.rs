@@ -4,12 +4,13 @@
 use nalgebra::DVector;
 
 use super::column::Kind;
+use super::constancy::mass_changes;
 use super::effects::{self, Effect, Found, Saturation, Shape};
 use super::equations::Equations;
 use super::error::{IdentifyError, Outcome};
 pub use super::figure::Figure;
 use super::friction::{Solved, Terms, inertial, left_above, left_of, solve_best};
-use super::lateness;
+use super::lateness::{self, Late};
 use super::noise::Whiteness;
 use super::recording::Recording;
 use super::rigidity::resonates;
@@ -60,6 +61,12 @@ pub struct Rigid {
     /// By how much later than recorded the force acts, s; absent where the recordings do not
     /// show it. The figures are those of the force as late as that.
     pub lateness_s: Option<Figure>,
+    /// By how much later than recorded the force acts, s, where that is more than a drive that
+    /// samples makes of it, and changes the figures; they are those of the force as recorded.
+    pub out_of_step_s: Option<Figure>,
+    /// By which share of it the mass differs from one part of the recordings to the others,
+    /// where it does.
+    pub change: Option<Figure>,
     /// Forces that no mass and friction have, estimated together with them.
     pub effects: Vec<Effect>,
     /// Whether the force ends at a value.
@@ -155,7 +162,7 @@ pub fn fit_all(
     };
     enough(&all, least)?;
     let solved = solve_best(&mut all, friction).ok_or_else(not_excited)?;
-    let (found, lateness_s) = lateness::fitted(&all, friction, &solved);
+    let (found, late) = lateness::fitted(&all, friction, &solved);
     if let Some(Saturation::Recording { limit, share }) = found.saturation
         && !found.is_known
     {
@@ -167,7 +174,7 @@ pub fn fit_all(
     if !mass_std.is_finite() {
         return Err(not_excited());
     }
-    Ok(described(found, lateness_s, samples, bandwidth_hz))
+    Ok(described(found, late, samples, bandwidth_hz))
 }
 
 fn saturated(limit: f64, share: f64) -> IdentifyError {
@@ -198,7 +205,7 @@ fn combined(solved: &Solved, weights: &[f64]) -> Figure {
     }
 }
 
-fn described(found: Found, lateness_s: Option<Figure>, samples: usize, bandwidth_hz: f64) -> Rigid {
+fn described(found: Found, late: Late, samples: usize, bandwidth_hz: f64) -> Rigid {
     let (all, solved) = (&found.all[..], &found.solved);
     let single = |index: usize| {
         let mut weights = vec![0.0; index];
@@ -254,7 +261,9 @@ fn described(found: Found, lateness_s: Option<Figure>, samples: usize, bandwidth
         whiteness: Whiteness::of(&left, 20.min(samples / 5)),
         resonates: rel_error > SUSPECT && all.iter().any(is_flexible),
         motion: all.first().map_or(Kind::Linear, |it| it.raw.motion),
-        lateness_s,
+        lateness_s: late.by_s(),
+        out_of_step_s: late.out_of_step_s(),
+        change: mass_changes(all, solved),
         effects: found.effects,
         saturation: found.saturation,
         theta,

@@ -2,8 +2,10 @@
 
 mod cells;
 mod coverage;
+mod disturbed;
 mod effects;
 mod lateness;
+mod miswritten;
 mod overlaid;
 mod presets;
 mod rubbing;
@@ -14,3 +16,4 @@ mod sweep;
 mod swinging;
 mod tuned;
 mod units;
+mod written_times;

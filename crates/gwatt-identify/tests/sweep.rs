@@ -37,7 +37,7 @@ fn flexible_word(recording: &Recording, order: Option<usize>) -> Word {
     }
 }
 
-fn axis(random: &mut Random) -> Axis {
+pub(crate) fn axis(random: &mut Random) -> Axis {
     Axis {
         mass: random.uniform(40.0, 150.0),
         viscous: random.uniform(100.0, 600.0),
@@ -47,7 +47,7 @@ fn axis(random: &mut Random) -> Axis {
     }
 }
 
-fn motion(random: &mut Random) -> Motion {
+pub(crate) fn motion(random: &mut Random) -> Motion {
     let stroke = random.uniform(0.08, 0.3);
     if random.uniform(0.0, 1.0) < 0.5 {
         Motion::sines(12_000, stroke, random)
@@ -96,7 +96,7 @@ fn two_columns(random: &mut Random, factor: f64) -> Word {
 }
 
 /// A torque with power up to 200 Hz.
-fn torque(samples: usize, random: &mut Random) -> Vec<f64> {
+pub(crate) fn torque(samples: usize, random: &mut Random) -> Vec<f64> {
     let lines: Vec<[f64; 2]> = (0..400)
         .map(|k| [0.5 * f64::from(k + 2), random.uniform(0.0, TAU)])
         .collect();
