@@ -2,14 +2,10 @@
 //! of use: without them it is tried too.
 
 use super::strategy::trusting;
-use super::summary::AT_LENGTH_MAX;
 use super::{Failure, LimitOptions, LimitSummary};
 use crate::diagnostic::Diagnostic;
 use crate::limit::Allowed;
 use crate::machine::{KnobTarget, Machine};
-
-/// What a program without a word must bring in, as a share of its time.
-const GAIN: f64 = 1e-4;
 
 /// Limits a program for a machine, from its beginning.
 type Run<'a> = &'a mut dyn FnMut(&Machine, LimitOptions) -> Result<LimitSummary, Failure>;
@@ -50,8 +46,8 @@ pub(super) fn with_words(
     Ok(summary)
 }
 
-/// The program with the output that holds the speed of moves to a share while they run, or
-/// without it, whichever fits and is sooner.
+/// The program with the output that holds the speed of moves to a share while they run, which
+/// leaves rapids what they are; or else, where only that one fits, the one without.
 fn with_share(
     machine: &Machine,
     how: LimitOptions,
@@ -59,15 +55,12 @@ fn with_share(
     run: Run<'_>,
 ) -> Result<LimitSummary, Failure> {
     let first = run(machine, how)?;
-    let Some(without) = without_share(machine).filter(|_| chooses) else {
+    let tries = chooses && !first.certified;
+    let Some(without) = without_share(machine).filter(|_| tries) else {
         return Ok(first);
     };
-    if first.certified && (first.edited_lines == 0 || first.before.moves > AT_LENGTH_MAX) {
-        return Ok(first);
-    }
     let second = run(&without, how)?;
-    let least_s = first.after.duration_s * (1.0 - GAIN);
-    if second.certified && (!first.certified || second.after.duration_s < least_s) {
+    if second.certified {
         return Ok(second);
     }
     run(machine, how)

@@ -258,7 +258,6 @@ fn rapids_stay_where_they_may_be_slower_than_they_count() {
     for program in [
         "A:\nG0 X400 Y300\nG0 X0 Y0\nOVRRAP=10\nB:\nREPEAT A B P=1\nM30\n",
         "/OVRRAP=10\nG0 X400 Y300\nG0 X0 Y0\nM30\n",
-        "OVRRAP=10\n/OVRRAP=100\nG0 X400 Y300\nG0 X0 Y0\nM30\n",
     ] {
         shop.put("a.mpf", program);
         let (code, _, errors) = shop.run("limit a.mpf -o again.mpf");
