@@ -135,7 +135,6 @@ fn times_without_a_point_count_as_lengths() {
         assert_eq!(dwell(controller, "", "X2."), seconds("2"));
     }
     assert_eq!(dwell("mitsubishi", "", "P12.5"), seconds("0.0125"));
-    assert_eq!(dwell("iso", "", "P500"), seconds("0.5"));
     let drilled = moves("mitsubishi", "G0 X1.\nG82 X2. Z-1. R0. P500. F100.\nG80\n");
     assert!(drilled.contains("dwell 0.5 s"), "{drilled}");
 }
