@@ -1,5 +1,7 @@
 //! Words that may be written, and are not always of use: without them it is tried too.
 
+use std::fmt::Write as _;
+
 use crate::shop::Shop;
 
 /// A return next to rapids on SINUMERIK: with ACC no acceleration is found for it, without it
@@ -13,7 +15,8 @@ fn words_that_are_permitted_do_not_keep_a_program_from_fitting() {
          [offsets]\nG54 = { X = -400, Y = -300, Z = -350 }\n",
     );
     for (letter, mass_kg, coulomb_n) in [("X", 600, 500), ("Y", 700, 500), ("Z", 500, 700)] {
-        machine += &format!(
+        let _ = write!(
+            machine,
             "[axes.{letter}]\nrapid_mm_min = 30000\naccel_mm_s2 = 4000\nmass_kg = {mass_kg}\n\
              coulomb_n = {coulomb_n}\nreference_mm = 0\n"
         );
@@ -55,7 +58,8 @@ fn an_output_that_may_be_used_need_not_be() {
              [converter]\npeak_power_w = 1200\n[limits]\nmargin = 0.0\n{outputs}"
         );
         for (letter, mass_kg, coulomb_n) in [("X", 600, 500), ("Y", 700, 500), ("Z", 500, 700)] {
-            machine += &format!(
+            let _ = write!(
+                machine,
                 "[axes.{letter}]\nrapid_mm_min = 30000\naccel_mm_s2 = 4000\nmass_kg = {mass_kg}\n\
                  coulomb_n = {coulomb_n}\n"
             );
