@@ -171,6 +171,11 @@ fn rapids_stay_rapids_while_a_laser_is_lit() {
         assert_eq!(certified, !is_refused, "{mode} {program} {reasons}");
         assert_eq!(reasons.contains("the laser is on"), is_refused, "{reasons}");
     }
+    // A line that runs again while the beam is lit: it is dark only the first time.
+    let again = "G21 G90 F500\no1 repeat [2]\nG0 X80 Y60\nG1 X81\nM4 S1000\no1 endrepeat\nM30\n";
+    let (certified, reasons) = limited(on, again);
+    assert!(!certified, "{reasons}");
+    assert!(reasons.contains("feeds or modes that differ"), "{reasons}");
 }
 
 /// Where a beam of constant power may wait, a rapid that becomes a feed changes nothing else.

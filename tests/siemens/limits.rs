@@ -240,6 +240,15 @@ fn rapids_stay_where_feeds_are_rounded_more() {
     assert_eq!(written("G641 ADIS=5\nG64"), (0, false));
     assert_eq!(written("G641 ADIS=5 ADISPOS=5"), (0, false));
     assert_eq!(written("G641"), (0, false));
+    // Lines that run again, and blocks that may be skipped.
+    for program in [
+        "A:\nG0 X400 Y300\nG0 X0 Y0\nG642 ADIS=5 ADISPOS=1\nB:\nREPEAT A B P=1\nM30\n",
+        "/G642 ADIS=5 ADISPOS=1\nG0 X400 Y300\nG0 X0 Y0\nM30\n",
+    ] {
+        shop.put("a.mpf", program);
+        let (code, _, errors) = shop.run("limit a.mpf -o again.mpf");
+        assert_eq!(code, 1, "{program} {errors}");
+    }
 }
 
 /// OVRRAP acts on rapids alone: where it is not known to act, they are counted at their full

@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 use gwatt_identify::flexible::Method;
 use gwatt_identify::{Judgement, Quantity, Recording, judgement, rigid};
 
-use crate::miswritten::{Columns, Outcome, flexible_outcome, line, outcomes, rigid_outcome};
-use crate::simulated::{Axis, Motion, PERIOD_S, Random, wanted};
+use crate::miswritten::{Case, Columns, Outcome, flexible_outcome, misled, rigid_outcome};
+use crate::simulated::{Axis, Motion, PERIOD_S, Random};
 use crate::sweep;
 
 const SAMPLES: usize = 12_000;
@@ -250,9 +250,7 @@ fn recorded(
     (columns.recorded(seen, noise, random), truth)
 }
 
-type Case = fn(&Kind, &mut Random) -> Outcome;
-
-const METHODS: [(&str, Case); 4] = [
+const METHODS: [(&str, Case<Kind>); 4] = [
     ("rigid", |kind, random| {
         let (drive, happens, seen) = (Drive::of(random), (kind.1)(random), seen(random));
         let (recording, truth) = recorded(&drive, happens, seen, random);
@@ -284,19 +282,9 @@ fn shaken(kind: &Kind, method: Method, random: &mut Random) -> Outcome {
 #[test]
 #[ignore = "minutes"]
 fn what_happens_to_an_axis_is_not_good() {
-    let methods = std::env::var("GWATT_METHODS").unwrap_or_else(|_| "rigid shaken".to_owned());
-    let seeds = wanted(10);
-    let mut misled = 0;
-    for (name, case) in METHODS.iter().filter(|(name, _)| methods.contains(name)) {
-        for kind in WRONG {
-            let found = outcomes(seeds.clone().count(), |index| {
-                case(kind, &mut Random(37 * (seeds.start + index as u64) + 3))
-            });
-            println!("{name}, {}", line(kind.0, &found));
-            misled += found.iter().filter(|it| it.misleads()).count();
-        }
-    }
-    assert_eq!(misled, 0);
+    let methods = "rigid shaken";
+    let found = misled(&METHODS, methods, WRONG, |kind| kind.0, |it| 37 * it + 3);
+    assert_eq!(found, 0);
 }
 
 /// A third more mass after 40 % of the recording, by a rigid and by a flexible model.

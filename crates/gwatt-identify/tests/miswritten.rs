@@ -1,15 +1,13 @@
 //! Recordings of which a column is not what its name says: swapped, late, held, cut to pieces,
 //! counted in too few bits. None may be called good with a mass that is wrong.
 
-use std::thread;
-
 use gwatt_identify::flexible::{self, Choice, Method};
 use gwatt_identify::{
     Figure, Given, Judgement, Kind, Measured, Quantity, Recording, Signal, judgement, rigid,
     simulate,
 };
 
-use crate::simulated::{PERIOD_S, Random, plant, wanted};
+use crate::simulated::{PERIOD_S, Random, in_two_threads, plant, wanted};
 use crate::sweep;
 
 use Quantity::{Acceleration, Force, Position, Velocity};
@@ -373,9 +371,7 @@ fn as_flexible(kind: &Kinds, method: Method, random: &mut Random) -> Outcome {
     flexible_outcome(&recording, method, [1.0 / plant.gain, 0.0])
 }
 
-type Case = fn(&Kinds, &mut Random) -> Outcome;
-
-const METHODS: [(&str, Case); 5] = [
+const METHODS: [(&str, Case<Kinds>); 5] = [
     ("rigid", as_rigid),
     ("iv", |kind, random| as_flexible(kind, Method::Iv, random)),
     ("frequency", |kind, random| {
@@ -387,21 +383,35 @@ const METHODS: [(&str, Case); 5] = [
     }),
 ];
 
-/// Outcomes of cases, in two threads.
-pub(crate) fn outcomes(cases: usize, case: impl Fn(usize) -> Outcome + Sync) -> Vec<Outcome> {
-    let halves = thread::scope(|scope| {
-        let half = |odd: usize| {
-            let case = &case;
-            scope.spawn(move || (odd..cases).step_by(2).map(case).collect::<Vec<_>>())
-        };
-        let threads = [half(0), half(1)];
-        threads.map(|thread| thread.join().unwrap())
-    });
-    halves.into_iter().flatten().collect()
+/// How a method identifies a case of a kind.
+pub(crate) type Case<Kind> = fn(&Kind, &mut Random) -> Outcome;
+
+/// How many cases of these kinds mislead, by those of the methods that `GWATT_METHODS` names,
+/// else by `methods`; `named` gives the name of a kind, and `seed` that of the random numbers.
+pub(crate) fn misled<Kind: Sync>(
+    cases: &[(&str, Case<Kind>)],
+    methods: &str,
+    kinds: &[Kind],
+    named: fn(&Kind) -> &str,
+    seed: fn(u64) -> u64,
+) -> usize {
+    let methods = std::env::var("GWATT_METHODS").unwrap_or_else(|_| methods.to_owned());
+    let seeds = wanted(10);
+    let mut misled = 0;
+    for (name, case) in cases.iter().filter(|(name, _)| methods.contains(name)) {
+        for kind in kinds {
+            let found = in_two_threads(seeds.clone().count(), |index| {
+                case(kind, &mut Random(seed(seeds.start + index as u64)))
+            });
+            println!("{name}, {}", line(named(kind), &found));
+            misled += found.iter().filter(|it| it.misleads()).count();
+        }
+    }
+    misled
 }
 
 /// A line of what came of cases of a kind.
-pub(crate) fn line(kind: &str, found: &[Outcome]) -> String {
+fn line(kind: &str, found: &[Outcome]) -> String {
     let mut words = std::collections::BTreeMap::new();
     for outcome in found {
         *words.entry(outcome.word.as_str()).or_insert(0) += 1;
@@ -423,19 +433,8 @@ pub(crate) fn line(kind: &str, found: &[Outcome]) -> String {
 #[test]
 #[ignore = "minutes"]
 fn columns_that_are_something_else_are_not_good() {
-    let methods = std::env::var("GWATT_METHODS").unwrap_or_else(|_| "rigid".to_owned());
-    let seeds = wanted(10);
-    let mut misled = 0;
-    for (name, case) in METHODS.iter().filter(|(name, _)| methods.contains(name)) {
-        for kind in WRONG {
-            let found = outcomes(seeds.clone().count(), |index| {
-                case(kind, &mut Random(31 * (seeds.start + index as u64) + 5))
-            });
-            println!("{name}, {}", line(kind.0, &found));
-            misled += found.iter().filter(|it| it.misleads()).count();
-        }
-    }
-    assert_eq!(misled, 0);
+    let found = misled(&METHODS, "rigid", WRONG, |kind| kind.0, |it| 31 * it + 5);
+    assert_eq!(found, 0);
 }
 
 /// A force after a lag of 6 ms on a plain axis.

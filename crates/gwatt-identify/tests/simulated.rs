@@ -3,6 +3,7 @@
 use std::env;
 use std::f64::consts::TAU;
 use std::ops::Range;
+use std::thread;
 
 use gwatt_identify::{Factor, Kind, Quantity, Recording, Signal, TransferFunction};
 
@@ -16,6 +17,19 @@ pub(crate) fn wanted(all: u64) -> Range<u64> {
         Some(from.parse().ok()?..to.parse().ok()?)
     });
     range.unwrap_or(0..all)
+}
+
+/// What comes of cases, in two threads.
+pub(crate) fn in_two_threads<T: Send>(cases: usize, case: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let halves = thread::scope(|scope| {
+        let half = |odd: usize| {
+            let case = &case;
+            scope.spawn(move || (odd..cases).step_by(2).map(case).collect::<Vec<_>>())
+        };
+        let threads = [half(0), half(1)];
+        threads.map(|thread| thread.join().unwrap())
+    });
+    halves.into_iter().flatten().collect()
 }
 
 /// `SplitMix64`, and normal deviates of it (Box & Muller).

@@ -3,14 +3,15 @@
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use std::thread;
 
 use gwatt_identify::flexible::{self, Choice, Method};
 use gwatt_identify::{
     Factor, Given, Measured, Quantity, Recording, TransferFunction, judgement, rigid, simulate,
 };
 
-use crate::simulated::{Axis, Motion, PERIOD_S, Random, Sensors, pair, plant, recorded, recording};
+use crate::simulated::{
+    Axis, Motion, PERIOD_S, Random, Sensors, in_two_threads, pair, plant, recorded, recording,
+};
 
 /// What came out: the verdict's word, or that it is refused.
 type Word = String;
@@ -272,16 +273,8 @@ fn right(seed: u64) -> (&'static str, Word) {
 type Table = BTreeMap<&'static str, BTreeMap<Word, usize>>;
 
 fn table(cases: usize, case: impl Fn(usize) -> (&'static str, Word) + Sync) -> Table {
-    let halves = thread::scope(|scope| {
-        let half = |odd: usize| {
-            let case = &case;
-            scope.spawn(move || (odd..cases).step_by(2).map(case).collect::<Vec<_>>())
-        };
-        let threads = [half(0), half(1)];
-        threads.map(|thread| thread.join().unwrap())
-    });
     let mut table = Table::new();
-    for (kind, word) in halves.into_iter().flatten() {
+    for (kind, word) in in_two_threads(cases, case) {
         *table.entry(kind).or_default().entry(word).or_default() += 1;
     }
     for (kind, words) in &table {

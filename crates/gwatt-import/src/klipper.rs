@@ -126,15 +126,7 @@ fn stepper(config: &Config<'_, '_>, axis: &mut FoundAxis, of: &Section, log: &mu
             .push(format!("Its endstop is a probe, {note}."));
     }
     let drive = of.steppers.first().map_or(section, String::as_str);
-    if let Some(turn) = config.positive(log, drive, "rotation_distance") {
-        let gear = last(config.items, drive, "gear_ratio");
-        let gear = gear.map_or(String::new(), |it| format!(", {}", it.source()));
-        axis.drive.push(format!(
-            "Travel of a revolution: {} mm, {}{gear}",
-            shown(turn.value),
-            turn.source
-        ));
-    }
+    axis.drive.extend(config.travel_of_a_turn(log, drive));
     axis.motors = of.steppers.len();
 }
 

@@ -1,6 +1,6 @@
 //! Values of the files of Klipper.
 
-use crate::found::Figure;
+use crate::found::{Figure, shown};
 use crate::ini::{Item, last};
 use crate::text::Log;
 
@@ -18,6 +18,18 @@ impl Config<'_, '_> {
         let item = last(self.items, section, key)?;
         let value = log.positive(&item.place, item.value, &format!("`{key}`"))?;
         Some(Figure::new(value, item.source()))
+    }
+
+    /// How far a revolution of a section's motor moves its axis, as a comment.
+    pub(super) fn travel_of_a_turn(&self, log: &mut Log, section: &str) -> Option<String> {
+        let turn = self.positive(log, section, "rotation_distance")?;
+        let gear = last(self.items, section, "gear_ratio");
+        let gear = gear.map_or(String::new(), |it| format!(", {}", it.source()));
+        let mm = shown(turn.value);
+        Some(format!(
+            "Travel of a revolution: {mm} mm, {}{gear}",
+            turn.source
+        ))
     }
 
     /// Any number.

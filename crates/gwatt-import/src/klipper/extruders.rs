@@ -9,7 +9,6 @@ use gwatt_machine::AxisId;
 
 use super::config::{Config, MIN};
 use crate::found::{Figure, Found, highest, shown};
-use crate::ini::last;
 use crate::text::Log;
 
 /// As many as Klipper looks for.
@@ -47,16 +46,7 @@ pub(super) fn take(
         axis.accel = highest(all.into_iter().filter_map(|[_, accel]| accel));
     }
     for section in &sections {
-        let Some(turn) = config.positive(log, section, "rotation_distance") else {
-            continue;
-        };
-        let gear = last(config.items, section, "gear_ratio");
-        let gear = gear.map_or(String::new(), |it| format!(", {}", it.source()));
-        axis.drive.push(format!(
-            "Travel of a revolution: {} mm, {}{gear}",
-            shown(turn.value),
-            turn.source
-        ));
+        axis.drive.extend(config.travel_of_a_turn(log, section));
     }
 }
 

@@ -16,12 +16,12 @@ const TOOL_SPINDLE: &str = "what the tool's own spindle (SB) draws is not counte
 /// Whether an address of two letters of some model has this name ("Extended address
 /// characters"): places of a second saddle, chamfers, turns, offsets.
 fn is_reserved(name: &str) -> bool {
-    const OTHERS: [&str; 12] = [
-        "BC", "BR", "QA", "CL", "CP", "CQ", "CR", "SX", "SY", "SZ", "TL", "TD",
+    const OTHERS: [&str; 13] = [
+        "BC", "BR", "QA", "CL", "CP", "CQ", "CR", "SX", "SY", "SZ", "TL", "TD", "TS",
     ];
     match name.as_bytes() {
         [first, b'A' | b'B'] if b"ADFIKLRSTUWXZ".contains(first) => true,
-        _ => OTHERS.contains(&name) || name == "TS",
+        _ => OTHERS.contains(&name),
     }
 }
 
