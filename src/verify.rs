@@ -121,7 +121,8 @@ impl SeriesSink for Points<'_> {
         };
         self.whole.push((time_s, power_w, line));
         for own in &mut self.axes {
-            if let Some(at) = instant.axes.get(own.index) {
+            let at = instant.axes.get(own.index);
+            if let Some(at) = at.filter(|at| !at.power_w.is_nan()) {
                 own.curve.power.push(time_s, at.power_w, line);
                 let accel_w = drawn_for_acceleration_w(own.axis, at);
                 own.curve.accel.push(time_s, accel_w, line);

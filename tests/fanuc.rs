@@ -303,6 +303,37 @@ fn alarms_and_state() {
     );
 }
 
+/// What the program itself has put in force, and offsets that the machine file gives. G54 to G59
+/// are group 14 on a Fanuc, 12 on a Haas ("Macros", group codes) and on a Mitsubishi.
+#[test]
+fn state_that_macros_read() {
+    let program = "G21 G90 G55\nG43 H7 Z50.\n#1=#4111\n#2=#4008\n#3=#GROUP\n#4=#5242\nG49\n#5=#4008\nG0 X[#1] Y[#2]\nX#3 Y#4 Z#5\n";
+    let offsets = "[offsets]\nG55 = { X = 10, Y = 20, Z = 30 }\n";
+    for (controller, group) in [("fanuc", "4014"), ("haas", "4012"), ("mitsubishi", "4012")] {
+        let found = moves_on(
+            &machine(controller, offsets),
+            &program.replace("GROUP", group),
+        );
+        let last = found.lines().rev().take(2).collect::<Vec<_>>();
+        assert_eq!(
+            last[0], "10 rapid X65.0000 Y40.0000 Z79.0000",
+            "{controller}: {found}"
+        );
+        assert_eq!(last[1], "9 rapid X17.0000 Y63.0000", "{controller}: {found}");
+    }
+    for (controller, unknown) in [
+        ("fanuc", "#1=#4012"),
+        ("haas", "#1=#4014"),
+        ("fanuc", "#1=#5261"),
+    ] {
+        let found = moves(controller, &format!("{unknown}\nG0 X#1\n"));
+        assert!(
+            found.contains("unknown-value: #1 depends on the state of the control"),
+            "{found}"
+        );
+    }
+}
+
 /// Mitsubishi M700V: an `,F` on G0 is not documented well enough to be followed.
 #[test]
 fn a_feed_behind_a_comma_is_refused() {

@@ -64,9 +64,9 @@ pub trait SeriesSink {
 /// with the same time. Where the machine has a spindle, the axes stand while the
 /// program waits for it.
 ///
-/// Rests that never end and moves from an unknown start have no place in time and
-/// are left out. What lasts for very many steps gets rows farther apart: the note
-/// that is given back says where first.
+/// Of a move from an unknown start a row has the most that may be drawn and fed back, and NaN
+/// for its axes. Rests that never end are left out. What lasts for very many steps gets rows
+/// farther apart: the note that is given back says where first.
 ///
 /// # Errors
 /// See [`Failure`]; an error of `sink` becomes [`Failure::Output`].
@@ -396,7 +396,9 @@ impl Sampler<'_> {
 
 /// Whether nothing jumps from one state to the other.
 fn alike(a: &Instant, b: &Instant) -> bool {
-    let near = |a: f64, b: f64| (a - b).abs() <= ROUNDING * a.abs().max(b.abs()).max(1e-3);
+    let near = |a: f64, b: f64| {
+        (a - b).abs() <= ROUNDING * a.abs().max(b.abs()).max(1e-3) || (a.is_nan() && b.is_nan())
+    };
     let fields = |axis: &AxisInstant| {
         [
             axis.velocity_mm_s,

@@ -3,8 +3,9 @@
 use std::io::{self, Cursor};
 
 use super::{FULL_W, machine, near, run};
+use gwatt::interpret::{MoveKind, Start};
 use gwatt::machine::Machine;
-use gwatt::pipeline::{Options, SeriesSink, series};
+use gwatt::pipeline::{Options, Row as ReportRow, SeriesSink, series};
 use gwatt::power::Instant;
 
 /// A row: time, line and state.
@@ -21,10 +22,13 @@ impl SeriesSink for Kept {
 }
 
 fn shown(machine: &Machine, program: &str, step_s: f64) -> Vec<Row> {
+    shown_as(machine, program, step_s, &Options::default())
+}
+
+fn shown_as(machine: &Machine, program: &str, step_s: f64, options: &Options) -> Vec<Row> {
     let mut kept = Kept::default();
     let program = format!("G21 G90\n{program}M2\n");
-    let options = Options::default();
-    series(Cursor::new(program), machine, &options, step_s, &mut kept).unwrap();
+    series(Cursor::new(program), machine, options, step_s, &mut kept).unwrap();
     kept.0
 }
 
@@ -140,6 +144,41 @@ fn a_tap_turns_the_spindle_round() {
     let stands = |row: &&&Row| row.2.axes[2].velocity_mm_s == 0.0;
     let standing: Vec<f64> = reversal.iter().filter(stands).map(|row| row.0).collect();
     near(standing[standing.len() - 1] - standing[0], 0.2);
+}
+
+/// Nothing is known of Z, and so not when X moves, which the spindle follows: such moves have
+/// their time and no more than bounds, the peak of the report at least.
+#[test]
+fn what_follows_an_unknown_motion_has_bounds() {
+    let program =
+        "G18 G61.1 G8 F1800\nG96 D3000 S100 M3\nG0 X50\nG4 P5\nG1 X20 Z5\nG1 X50\nM5\nG4 P1\n";
+    let mut options = Options::default();
+    options.reading.start = Start::Unknown;
+    for credit in ["credit_regen = true", "credit_regen = false"] {
+        let lathe = machine("linuxcnc", credit, "base_load_w = 30", "");
+        let (output, summary) = run(&lathe, program, &options);
+        let rows = shown_as(&lathe, program, 1e-3, &options);
+        near(rows.last().unwrap().0, summary.duration_s);
+        let judged = |row: &&ReportRow| row.line == 6 && row.kind == MoveKind::Feed;
+        let judged = output.iter().find(judged).unwrap();
+        let unknown: Vec<&Row> = rows
+            .iter()
+            .filter(|row| row.1 == 6 && row.0 > judged.start_s)
+            .collect();
+        assert!(unknown.len() > 100, "{}", unknown.len());
+        for (_, _, now) in unknown {
+            assert!(now.unknown_axes.contains(0) && now.unknown_axes.contains(2));
+            assert!(now.axes[0].power_w.is_nan() && now.spindle.speed_rpm.is_nan());
+            assert_eq!(now.axes[1].power_w, 0.0);
+            near(now.bus_w[0], judged.peak_w);
+            near(now.regen_w[0], judged.regen_w);
+        }
+        // From there on all is known, but for the speed of the spindle at the beginning.
+        let known = rows.iter().filter(|row| row.1 == 7);
+        assert!(known.clone().count() > 100);
+        assert!(known.clone().all(|row| row.2.unknown_axes.is_empty()));
+        assert!(known.clone().all(|row| row.2.bus_w[0].is_finite()));
+    }
 }
 
 /// The integral of the bus power is the report's energy, its largest value the

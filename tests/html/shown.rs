@@ -278,3 +278,49 @@ fn gaps_are_shown() {
     let bound = shown["bars"]["bound"].as_array().unwrap();
     assert!(bound.iter().any(|it| it == true) && bound.iter().any(|it| it == false));
 }
+
+/// A rapid whose start is not known takes its time in the areas too, with the most that it may
+/// draw; what comes after it is not early.
+#[test]
+fn a_move_from_an_unknown_start_has_its_time() {
+    let desk = Desk::new();
+    let program = "G21 G90 G54 G17 G94\nG0 X100 Y50 Z50\nG43 H1 Z20\nG1 X200 F3000\nM30\n";
+    desk.put("lengths.ngc", program);
+    let report = ["report", "lengths.ngc", "-m", "vmc", "--html", "page.html"];
+    let files = ["--series", "series.csv", "--json", "report.json"];
+    desk.exits(0, &[&report[..], &files].concat());
+    let shown = data(&desk.get("page.html"));
+    let whole: Value = serde_json::from_str(&desk.get("report.json")).unwrap();
+    let rows = &whole["blocks"];
+    let own = |row: usize, name: &str| rows[row][name].as_f64().unwrap();
+    let place = shown["channels"].as_array().unwrap().len() - 1;
+    assert_eq!(shown["channels"][place], "unknown start, at most");
+    let shares = &shown["shares"]["before"];
+    let (from_s, drawn_w) = (&shares["from_s"], &shares["up"][place]);
+    let spans = 0..shares["count"].as_u64().unwrap() as usize;
+    let unknown: Vec<usize> = spans
+        .filter(|it| drawn_w[*it].as_f64() > Some(0.0))
+        .collect();
+    let edges = [unknown[0], unknown[unknown.len() - 1]];
+    let [begins_s, ends_s] = edges.map(|it| from_s[it].as_f64().unwrap());
+    assert!((begins_s - own(1, "start_s")).abs() < 2e-6);
+    assert!((ends_s - own(2, "start_s")).abs() < 2e-6);
+    assert!((drawn_w[unknown[0]].as_f64().unwrap() - own(1, "peak_w")).abs() < 1.0);
+    let series = desk.get("series.csv");
+    let before = series.lines().filter(|it| it.starts_with("before,"));
+    let cells: Vec<Vec<&str>> = before.map(|it| it.split(',').collect()).collect();
+    let last_s: f64 = cells[cells.len() - 1][1].parse().unwrap();
+    assert!((last_s - whole["duration_s"].as_f64().unwrap()).abs() < 1e-9);
+    // Nothing is known of Z in line 3, and X stands.
+    let third = cells.iter().filter(|row| row[2] == "3");
+    assert!(third.clone().count() > 100);
+    for row in third {
+        assert_eq!((row[3], row[11], row[14]), ("0", "", ""), "{row:?}");
+    }
+    let peak_w = |line: &str| {
+        let own = cells.iter().filter(|row| row[2] == line);
+        own.map(|row| row[20].parse::<f64>().unwrap())
+            .fold(0.0, f64::max)
+    };
+    assert!((peak_w("3") - own(1, "peak_w")).abs() < 1e-6);
+}

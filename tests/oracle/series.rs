@@ -309,6 +309,11 @@ impl<'p> Watch<'p> {
 impl SeriesSink for Watch<'_> {
     fn row(&mut self, time_s: f64, line: u64, now: &Instant) -> io::Result<()> {
         self.rows += 1;
+        if !now.unknown_axes.is_empty() {
+            // Bounds, with which nothing adds up.
+            self.last = None;
+            return Ok(());
+        }
         for axis in &self.plant.axes {
             self.forces(axis, time_s, line, &now.axes[axis.index]);
         }

@@ -13,6 +13,18 @@ fn refusals_name_the_construct() {
             "1 unsupported-word: CT is an arc tangential to the move before, which gwatt does not follow",
         ),
         (
+            "PRESETON(X,100)",
+            "1 unsupported-word: PRESETON is another value of a place where the axis stands, which gwatt does not follow",
+        ),
+        (
+            "CONTPRON(TAB,\"L\")",
+            "1 unsupported-word: CONTPRON is a table of a contour, whose blocks are stored and not run, which gwatt does not follow",
+        ),
+        (
+            "PTP",
+            "1 unsupported-word: PTP is travel that is not along the path, which gwatt does not follow",
+        ),
+        (
             "G58 X10",
             "1 unsupported-code: G58 is an offset of single axes, which gwatt does not support",
         ),

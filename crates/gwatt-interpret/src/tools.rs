@@ -52,6 +52,16 @@ pub(super) struct Tools {
 }
 
 impl Tools {
+    /// What G43 or G44 in force does; `None`: G49.
+    pub(super) fn length_form(&self) -> Option<ToolLength> {
+        self.length.map(|(form, _)| form)
+    }
+
+    /// The number of its offset.
+    pub(super) fn length_number(&self) -> Option<u32> {
+        self.length.map(|(_, number)| number)
+    }
+
     pub(super) fn new(table: Option<Arc<ToolTable>>) -> Self {
         Self {
             table,

@@ -11,6 +11,7 @@ mod axis;
 pub mod builtin;
 mod config;
 mod controller;
+mod dialect;
 mod family;
 mod knob;
 mod levels;
@@ -26,6 +27,7 @@ pub use axis::{ALL_AXES, AXES, Axis, AxisId, AxisKind, AxisSet, AxisValues, FURT
 pub use builtin::builtin_controller;
 pub use config::{Loaded, controller_schema, schema};
 pub use controller::*;
+pub use dialect::*;
 pub use family::{Family, FamilyFacts, LevelWords, LowerOf, TurningPlane};
 pub use knob::*;
 pub use levels::*;

@@ -130,7 +130,7 @@ impl<'m> Assessor<'m> {
 
     /// Takes the motion that is planned since, in the order of time. Of moves
     /// whose timing depends on others that are not modelled it is the one with
-    /// stops; moves from an unknown start are left out.
+    /// stops; of moves from an unknown start no more than bounds.
     pub fn motions(&mut self) -> std::vec::Drain<'_, Motion> {
         self.observer.motions.get_or_insert_default().drain(..)
     }

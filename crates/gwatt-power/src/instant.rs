@@ -4,7 +4,7 @@
 //! without servo factors.
 
 use super::model::PowerModel;
-use super::motion::{Course, Motion};
+use super::motion::{Bounds, Course, Motion};
 use gwatt_machine::{AXES, AxisSet};
 use gwatt_motion::Move;
 use gwatt_plan::{Phase, State};
@@ -48,9 +48,12 @@ pub struct SpindleInstant {
 pub struct Instant {
     /// The axes by index.
     pub axes: [AxisInstant; AXES],
-    /// Speed along the path, mm/s; 0 where there is none.
+    /// Axes that move from an unknown start: their figures are NaN, and `bus_w` and `regen_w`
+    /// are the most that may be, both at once.
+    pub unknown_axes: AxisSet,
+    /// Speed along the path, mm/s; 0 where there is none, the largest from an unknown start.
     pub path_mm_s: f64,
-    /// The spindle.
+    /// The spindle; NaN but for cutting where it follows an X that moves from an unknown start.
     pub spindle: SpindleInstant,
     /// What each converter draws, base load included, W; what is fed back is
     /// taken off where the converter credits it.
@@ -66,6 +69,7 @@ impl Motion {
     /// The state `t` seconds after the beginning, by the laws that hold at
     /// `inside`, which lies between the same switches.
     pub fn at(&self, model: &PowerModel, t: f64, inside: f64, instant: &mut Instant) {
+        instant.unknown_axes = AxisSet::default();
         let mut active = AxisSet::default();
         instant.axes = [AxisInstant::default(); AXES];
         for (index, own) in instant.axes.iter_mut().enumerate() {
@@ -100,6 +104,9 @@ impl Motion {
         instant.path_mm_s = self.path_mm_s([t, inside]);
         instant.bus_w.clear();
         instant.regen_w.clear();
+        if let Course::Unknown(motion) = &self.course {
+            return self.bound(model, motion, instant);
+        }
         for converter in &model.converters {
             let moving = AxisSet(active.0 & converter.axes.0);
             let idle_w = converter.idle_w(&self.mv, &model.axes, moving);
@@ -123,12 +130,31 @@ impl Motion {
         }
     }
 
+    /// The most that the converters may draw and take back, from an unknown start.
+    fn bound(&self, model: &PowerModel, motion: &Bounds, instant: &mut Instant) {
+        instant.unknown_axes = AxisSet(self.mv.moving.0 | self.mv.unknown_start.0);
+        for axis in instant.unknown_axes.iter() {
+            instant.axes[axis] = AxisInstant {
+                velocity_mm_s: f64::NAN,
+                accel_mm_s2: f64::NAN,
+                force_n: f64::NAN,
+                power_w: f64::NAN,
+            };
+        }
+        for converter in &model.converters {
+            let (bound, accel_mm_s2) = (&motion.most.bound, &motion.most.accel_mm_s2);
+            let most = model.robust_totals(converter, &self.mv, bound, accel_mm_s2);
+            instant.bus_w.push(most.peak_w);
+            instant.regen_w.push(most.regen_w);
+        }
+    }
+
     /// Speed and acceleration of an axis at two instants between the same
     /// switches, of which the second gives the law; `None` where it stands.
     pub(super) fn axis(&self, axis: usize, instants: [f64; 2]) -> Option<[(f64, f64); 2]> {
         let [t, inside] = instants.map(|t| t + self.from_s);
         match &self.course {
-            Course::Rest(_) => None,
+            Course::Rest(_) | Course::Unknown(_) => None,
             Course::Path(phases) | Course::Line(phases) => {
                 if !self.mv.moving.contains(axis) {
                     return None;
@@ -173,6 +199,7 @@ impl Motion {
         let own = instants.map(|t| t + self.from_s);
         match &self.course {
             Course::Rest(_) | Course::Axes(_) => 0.0,
+            Course::Unknown(motion) => motion.speed_mm_s,
             Course::Path(phases) | Course::Line(phases) | Course::Blend(_, phases) => {
                 states_along(phases, own).map_or(0.0, |[state, _]| state.velocity_mm_s)
             }
@@ -206,6 +233,7 @@ impl Motion {
         let share = (self.mv.end[X] - self.mv.start[X]) / self.mv.length_mm;
         match &self.course {
             Course::Rest(_) => before_mm,
+            Course::Unknown(_) => self.mv.end[X],
             Course::Path(phases) => {
                 let turned = self.mv.arc.as_ref().and_then(|arc| {
                     let which = arc.plane.iter().position(|own| *own == X)?;

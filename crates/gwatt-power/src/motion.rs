@@ -8,7 +8,7 @@ use super::piece::straight_line;
 use gwatt_machine::AXES;
 use gwatt_motion::Move;
 use gwatt_plan::lookahead::{Piece, Planned};
-use gwatt_plan::{Blend, Phase, Plan, Profile, Trajectory};
+use gwatt_plan::{Blend, Phase, Plan, Profile, Trajectory, UnknownMotion};
 use std::f64::consts::FRAC_PI_2;
 
 /// Instants at which the axes of one arc may turn back that are looked at.
@@ -49,10 +49,21 @@ pub(super) enum Course {
     Axes(Vec<(usize, Vec<Phase>)>),
     /// Two motions at once: the speeds of each axis add up.
     Both(Box<[Motion; 2]>),
+    /// From an unknown start: no more is known than bounds.
+    Unknown(Box<Bounds>),
+}
+
+/// What is known of a motion from an unknown start.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Bounds {
+    pub most: UnknownMotion,
+    /// The largest speed along the path.
+    pub speed_mm_s: f64,
+    duration_s: f64,
 }
 
 impl Motion {
-    /// The motion of a planned move; `None` where its timing is not known.
+    /// The motion of a planned move; `None` where it never ends.
     #[must_use]
     pub fn of_plan(mv: &Move, plan: &Plan) -> Option<Self> {
         let course = match &plan.trajectory {
@@ -63,6 +74,15 @@ impl Motion {
                 Course::Axes(axes.map(|(axis, own)| (*axis, phases(own))).collect())
             }
             Trajectory::Rest if plan.duration_s.is_finite() => Course::Rest(plan.duration_s),
+            Trajectory::Unknown(motion) if plan.duration_s.is_finite() => {
+                let most = UnknownMotion::clone(motion);
+                let (speed_mm_s, duration_s) = (plan.speed_limit_mm_s, plan.duration_s);
+                Course::Unknown(Box::new(Bounds {
+                    most,
+                    speed_mm_s,
+                    duration_s,
+                }))
+            }
             Trajectory::Rest | Trajectory::Unknown(_) => return None,
         };
         Some(Self::new(mv.clone(), course))
@@ -228,6 +248,7 @@ impl Course {
         };
         let mut switches = match self {
             Self::Rest(duration_s) => vec![*duration_s],
+            Self::Unknown(bounds) => vec![bounds.duration_s],
             Self::Path(phases) | Self::Line(phases) | Self::Blend(_, phases) => ends(phases),
             Self::Axes(axes) => axes.iter().flat_map(|(_, phases)| ends(phases)).collect(),
             Self::Both(both) => both.iter().flat_map(Motion::switches_s).collect(),

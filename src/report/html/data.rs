@@ -8,7 +8,7 @@ use super::block::Block;
 use super::cell::Cell;
 use super::columns::{column, drawn, figure, known, share, time, words};
 use super::figures;
-use super::shares::{Moment, PageSeries};
+use super::shares::{BASE, Moment, PageSeries, UNKNOWN};
 use super::shown::Page;
 use super::voltage;
 use crate::machine::{ALL_AXES, AXES, RapidPath};
@@ -195,6 +195,7 @@ pub(super) fn channels(page: &Page<'_>) -> Vec<String> {
             .to_string(),
         Some(AXES) => "spindle".to_owned(),
         Some(own) if own == AXES + 1 => "cutting".to_owned(),
+        Some(own) if own + 2 == UNKNOWN => "unknown start, at most".to_owned(),
         _ => "base load".to_owned(),
     };
     places.map(name).collect()
@@ -206,7 +207,12 @@ pub(super) fn channel_places(page: &Page<'_>) -> Vec<usize> {
     let axes = (0..AXES).filter(|axis| has(*axis)).map(|axis| axis + 2);
     let has_spindle = page.machines().any(|it| it.spindle.is_some());
     let spindle = [AXES + 2, AXES + 3].into_iter().filter(|_| has_spindle);
-    axes.chain(spindle).chain([AXES + 4]).collect()
+    let series = [page.before, page.after].into_iter().flatten();
+    let unknown = series
+        .filter(|it| it.has_unknown())
+        .map(|_| UNKNOWN)
+        .take(1);
+    axes.chain(spindle).chain([BASE]).chain(unknown).collect()
 }
 
 /// The planned power over time.

@@ -7,10 +7,10 @@
 use crate::machine::AXES;
 
 /// Values of a sample.
-pub(super) const VALUES: usize = AXES + 5;
+pub(super) const VALUES: usize = AXES + 6;
 
 /// Values at an instant: what is drawn and fed back, then the axes, the spindle, cutting,
-/// and what is left: the base load and switched loads.
+/// what is left (the base load and switched loads), and what moves from an unknown start may draw.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Sample {
     /// In s.

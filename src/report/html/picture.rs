@@ -25,10 +25,10 @@ const TOP: f64 = 80.0;
 const GAP: f64 = 60.0;
 const LIMIT: &str = "#b00020";
 const OVERLOAD: &str = "#a04a00";
-/// By axis, then spindle, cutting and base load.
-const COLOURS: [&str; 13] = [
+/// By axis, then spindle, cutting, base load and moves from an unknown start.
+const COLOURS: [&str; 14] = [
     "#4269d0", "#e3891b", "#3a9d5d", "#c4457a", "#7a5ac2", "#1c9aa8", "#a0673a", "#6b8e23",
-    "#b8860b", "#2f7f6f", "#8f6bb8", "#d65f4d", "#9a9a9a",
+    "#b8860b", "#2f7f6f", "#8f6bb8", "#d65f4d", "#9a9a9a", "#d0cdbd",
 ];
 
 /// Writes the picture.

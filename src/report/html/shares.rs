@@ -18,6 +18,10 @@ const ROUNDING: f64 = 1e-9;
 /// See [`ROUNDING`].
 const ROUNDING_S: f64 = 1e-9;
 
+/// The places of the base load and of moves from an unknown start among the values of a sample.
+pub(super) const BASE: usize = AXES + 4;
+pub(super) const UNKNOWN: usize = AXES + 5;
+
 /// Which program a series shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
@@ -103,6 +107,12 @@ impl PageSeries {
         }
     }
 
+    /// Whether there are moves from an unknown start.
+    pub(super) fn has_unknown(&self) -> bool {
+        let spans = &mut self.spans.iter();
+        spans.any(|it| it.drawn.values_w[UNKNOWN] > 0.0)
+    }
+
     /// Whether each span is one sample.
     pub(super) fn is_whole(&self) -> bool {
         self.size == 1
@@ -161,11 +171,13 @@ impl PageSeries {
 impl SeriesSink for PageSeries {
     fn row(&mut self, time_s: f64, _line: u64, instant: &Instant) -> io::Result<()> {
         let sample = sample(time_s, instant);
-        if let Some(last) = &self.last {
+        // From an unknown start it is a bound, of which no energy can be made.
+        let known = instant.unknown_axes.is_empty();
+        if let Some(last) = self.last.filter(|_| known) {
             let mean_w = f64::midpoint(last.values_w[1], sample.values_w[1]);
             self.fed_back_j += mean_w * (time_s - last.time_s);
         }
-        self.last = Some(sample);
+        self.last = Some(sample).filter(|_| known);
         self.meet(&sample, instant);
         if let Some(kept) = self.door.add(&sample) {
             self.keep(kept);
@@ -256,12 +268,15 @@ fn sample(time_s: f64, instant: &Instant) -> Sample {
     let own = [spindle.power_w, spindle.cutting_w];
     let powers = instant.axes.iter().map(|axis| axis.power_w).chain(own);
     for (place, power_w) in values_w.iter_mut().skip(2).zip(powers) {
-        *place = power_w;
-        left_w -= power_w.max(0.0);
+        if !power_w.is_nan() {
+            *place = power_w;
+            left_w -= power_w.max(0.0);
+        }
     }
     // Where what is fed back counts, less is drawn than all draw; rounding is none.
     if left_w > ROUNDING * bus_w {
-        values_w[AXES + 4] = left_w;
+        let known = instant.unknown_axes.is_empty();
+        values_w[if known { BASE } else { UNKNOWN }] = left_w;
     }
     [values_w[0], values_w[1]] = [bus_w, regen_w];
     Sample { time_s, values_w }

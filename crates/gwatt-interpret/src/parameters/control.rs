@@ -3,6 +3,7 @@
 use super::{UNDER_COMPENSATION, is_tool};
 use crate::control::Control;
 use crate::expression::{Held, KEPT, Name, Read, TOOL, Variables};
+use crate::tools::ToolLength;
 use gwatt_machine::Lathe;
 use gwatt_motion::FeedMode;
 
@@ -32,11 +33,13 @@ impl Control<'_> {
             4001..=4021 => self.modal_code(number),
             4120 if self.tools.selected_known().is_none() => return Read::Unknown(TOOL),
             4120 => self.tools.selected_known().map(f64::from),
+            4111 => self.tools.length_number().map(f64::from),
             4109 => self.modal.feed.as_ref().map(|feed| feed.value),
             4119 => Some(self.modal.spindle_rpm),
             5001..=5009 => self.place(axis(5001)),
             5021..=5029 => self.place_in_machine(axis(5021)),
             5041..=5049 => self.place(axis(5041)),
+            5221..=5326 => self.work_offset(number - 5221),
             _ => None,
         };
         match known {
@@ -80,12 +83,30 @@ impl Control<'_> {
             },
             4006 if self.modal.mm_per_unit == 1.0 => 21.0,
             4006 => 20.0,
-            4014 => match self.position.offsets().system {
-                system @ 1..=6 => 53.0 + f64::from(system),
-                _ => return None,
+            4008 => match self.tools.length_form() {
+                None => 49.0,
+                Some(ToolLength::Reversed) => 44.0,
+                Some(_) => 43.0,
             },
+            _ if self.dialect().work_offset_group.map(u32::from) == Some(number - 4000) => {
+                match self.position.offsets().system {
+                    system @ 1..=6 => 53.0 + f64::from(system),
+                    _ => return None,
+                }
+            }
             _ => return None,
         })
+    }
+
+    /// #5221 and so on, twenty a system from G54 on: the origin of X, Y or Z on a mill, where
+    /// it is known.
+    fn work_offset(&self, place: u32) -> Option<f64> {
+        let (system, axis) = ((place / 20 + 1) as u16, (place % 20) as usize);
+        let offsets = self.position.offsets();
+        if axis > 2 || self.dialect().lathe.is_some() || !offsets.is_origin_known(system, axis) {
+            return None;
+        }
+        Some(self.in_unit(axis, offsets.origin_of(system)[axis]))
     }
 
     /// Gives a parameter a value, or takes note that what it holds is not known; the

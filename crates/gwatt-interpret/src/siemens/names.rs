@@ -105,12 +105,45 @@ const DATA: &[&str] = &[
     "GROUP_ADDEND",
     "CANCEL",
     "WAITS",
+    "WAITP",
     "CLEARM",
+    "SETM",
+    "MMC",
+    "CLRINT",
     "ENABLE",
     "DISABLE",
     "DELAYFSTON",
     "DELAYFSTOF",
     "POLFMASK",
+    "PROTA",
+    "PROTD",
+    "PROTS",
+    "DRFOF",
+    // Ends of what is refused where it begins.
+    "CORROF",
+    "FENDNORM",
+    "CUTCONOF",
+    "CP",
+    "TCOABS",
+    "TCOFR",
+    "TCOFRX",
+    "TCOFRY",
+    "TCOFRZ",
+    "TRAILOF",
+    "LEADOF",
+    "EGOFS",
+    "EGOFC",
+    "COUPOF",
+    "COUPOFS",
+    "COUPDEL",
+    "MASLOF",
+    "TANGOF",
+    "TANGDEL",
+    "FTOCOF",
+    "FOCOF",
+    "SPOF",
+    "TMON",
+    "TMOF",
 ];
 
 /// Refused, with the reason.
@@ -222,6 +255,22 @@ const REFUSED: &[(&str, &str)] = &[
     ("ASUP", "an interrupt routine"),
     ("REPOSL", "a return to the contour"),
     ("REPOSA", "a return to the contour"),
+    ("PTP", "travel that is not along the path"),
+    ("PTPG0", "travel that is not along the path"),
+    ("CUTCON", "a compensation that stays as it is"),
+    ("CUTCONON", "a compensation that stays as it is"),
+    ("FENDOF", "a feed that is lowered at corners"),
+    ("NEWCONF", "machine data that the program may have changed"),
+    ("FXS", "travel to a fixed stop"),
+    ("FOCON", "travel against a torque"),
+    ("FTOCON", "a tool offset in motion"),
+    ("ORIPATH", "an orientation along the path"),
+    ("ORIPATHS", "an orientation along the path"),
+    ("ORICURVE", "an orientation along a curve"),
+    ("ORICONCW", "an orientation on a cone"),
+    ("ORICONCCW", "an orientation on a cone"),
+    ("ORICONIO", "an orientation on a cone"),
+    ("ORICONTO", "an orientation on a cone"),
     ("ISOCALL", "a call of a program in another language"),
     ("PCALL", "a call by a path"),
     ("CYCLE71", "a milling cycle"),
@@ -270,6 +319,57 @@ const REFUSED: &[(&str, &str)] = &[
     ("LONGHOLE", "a slot cycle"),
 ];
 
+/// Refused where parentheses follow: programs and labels may have these names too.
+const PROCEDURES: &[(&str, &str)] = &[
+    ("PRESETON", "another value of a place where the axis stands"),
+    (
+        "PRESETONS",
+        "another value of a place where the axis stands",
+    ),
+    ("GEOAX", "a change of the axes that form the coordinates"),
+    (
+        "CONTPRON",
+        "a table of a contour, whose blocks are stored and not run",
+    ),
+    (
+        "CONTDCON",
+        "a table of a contour, whose blocks are stored and not run",
+    ),
+    (
+        "CTABDEF",
+        "a table of a curve, whose blocks are stored and not run",
+    ),
+    ("SPLINEPATH", "a spline"),
+    (
+        "EXECSTRING",
+        "a block that is put together while the program runs",
+    ),
+    ("WRITE", "writing of a file, whose success a variable says"),
+    (
+        "DELETE",
+        "deletion of a file, whose success a variable says",
+    ),
+    ("READ", "reading of a file"),
+    ("GETT", "a choice by the tool management"),
+    ("GET", "an axis that another channel has had"),
+    ("GETD", "an axis that another channel has had"),
+    ("RELEASE", "an axis for another channel"),
+    ("AXTOCHAN", "an axis for another channel"),
+    ("INIT", "another channel"),
+    ("START", "another channel"),
+    ("WAITE", "another channel"),
+    ("WAITM", "another channel"),
+    ("WAITMC", "another channel"),
+    ("EGDEF", "coupled axes"),
+    ("MASLON", "coupled axes"),
+    ("TANG", "an axis that turns with the path"),
+    ("TANGON", "an axis that turns with the path"),
+    ("TLIFT", "an axis that turns with the path"),
+    ("PUTFTOC", "a tool offset in motion"),
+    ("FCTDEF", "a synchronized action"),
+    ("SYNFCT", "a synchronized action"),
+];
+
 impl Name {
     /// What a name in upper case is; `None` for those that are not in the list.
     pub(super) fn of(name: &str) -> Option<Self> {
@@ -282,9 +382,16 @@ impl Name {
         if DATA.contains(&name) {
             return Some(Self::Data);
         }
-        REFUSED
-            .iter()
-            .find(|(refused, _)| *refused == name)
-            .map(|(_, reason)| Self::Refused(reason))
+        Self::refused(name, REFUSED)
+    }
+
+    /// The same where parentheses follow.
+    pub(super) fn of_procedure(name: &str) -> Option<Self> {
+        Self::of(name).or_else(|| Self::refused(name, PROCEDURES))
+    }
+
+    fn refused(name: &str, list: &[(&str, &'static str)]) -> Option<Self> {
+        let found = list.iter().find(|(refused, _)| *refused == name);
+        found.map(|(_, reason)| Self::Refused(reason))
     }
 }

@@ -116,7 +116,11 @@ impl Reading<'_, '_, '_> {
         }
         // `A3` is an angle, `A3=` a vector.
         let word = name.as_bytes().get(1).is_some_and(u8::is_ascii_digit) && !assigns;
-        let known = if word { None } else { Name::of(&name) };
+        let known = match self.cursor.peek() {
+            _ if word => None,
+            Some(b'(') => Name::of_procedure(&name),
+            _ => Name::of(&name),
+        };
         match known {
             Some(Name::Data) => return self.pass_over().map(|()| None),
             Some(Name::Refused(reason)) => return Err(self.cursor.refused(&name, reason, start)),

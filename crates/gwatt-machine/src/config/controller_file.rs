@@ -7,10 +7,10 @@ use super::look_ahead::LookAheadTable;
 use super::printer_table::PrinterTable;
 use super::value::{At, NotNegative, Positive};
 use crate::controller::{
-    ArcRule, ArcWithoutCenter, CompensationCorner, CompensationLead, InverseAngles, Lathe,
-    PathMode, Point, PowerOnMotion, RapidJoint, RapidPath, SpindleWait, TapFeed, ToolChange,
-    TypeTwo,
+    ArcRule, ArcWithoutCenter, CompensationCorner, CompensationLead, PathMode, PowerOnMotion,
+    RapidJoint, RapidPath, SpindleWait, TapFeed, ToolChange, TypeTwo,
 };
+use crate::dialect::{InverseAngles, Lathe, Point};
 use crate::family::Family;
 use crate::knob::{KnobTarget, KnobUnit};
 
@@ -159,6 +159,9 @@ pub(crate) struct LanguageTable {
     pub(crate) m97_calls: Option<bool>,
     /// M16 changes the tool as M6 does, as on a Haas; default false.
     pub(crate) m16_changes_tool: Option<bool>,
+    /// The group of G54 to G59, by which macros read the one in force: 14 for #4014 (Fanuc), 12
+    /// for #4012 (Haas, Mitsubishi); default: not known.
+    pub(crate) work_offset_group: Option<u8>,
     /// G12 and G13 mill circular pockets, as on a Haas; default false.
     pub(crate) circular_pocket: Option<bool>,
     /// Whether G81 to G89 of a lathe all drill along Z, from the place R, as on a Haas; default

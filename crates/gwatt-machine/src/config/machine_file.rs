@@ -21,9 +21,9 @@ use super::value::{
     RapidPercent, ResponseTime, Share,
 };
 use crate::controller::{
-    ArcWithoutCenter, InverseAngles, PathMode, Point, PowerOnMotion, RapidPath, TapFeed,
-    ToolChange, TypeTwo,
+    ArcWithoutCenter, PathMode, PowerOnMotion, RapidPath, TapFeed, ToolChange, TypeTwo,
 };
+use crate::dialect::{InverseAngles, Point};
 
 /// A machine whose drives share a power converter.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]

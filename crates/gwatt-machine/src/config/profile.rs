@@ -14,9 +14,10 @@ use super::value::At;
 use super::word;
 use crate::axis::AxisId;
 use crate::controller::{
-    ArcRule, ArcWithoutCenter, Controller, CutterCompensation, Dialect, Language, Planner,
-    PowerOnMotion, RapidJoint, RapidKnob, RapidPath, SpindleWait, TapFeed,
+    ArcRule, ArcWithoutCenter, Controller, CutterCompensation, Language, Planner, PowerOnMotion,
+    RapidJoint, RapidKnob, RapidPath, SpindleWait, TapFeed,
 };
+use crate::dialect::Dialect;
 use crate::knob::{Knob, KnobArgument, KnobTarget, KnobUnit};
 use crate::queue::{LaserMode, MESSAGE, MESSAGES, Queue, QueueEffect, QueueWord};
 use crate::units::SECONDS_PER_MINUTE;
@@ -160,6 +161,7 @@ fn dialect(table: &LanguageTable) -> Dialect {
         inverse_angles_are_known: false,
         m97_calls: table.m97_calls.unwrap_or(false),
         m16_changes_tool: table.m16_changes_tool.unwrap_or(false),
+        work_offset_group: table.work_offset_group,
         circular_pocket: table.circular_pocket.unwrap_or(false),
         holes_along_z: table.holes_along_z.unwrap_or(false),
         bores_by_hand: table.bores_by_hand.unwrap_or(false),

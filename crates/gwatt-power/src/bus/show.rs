@@ -32,14 +32,16 @@ impl SpindleBus<'_> {
             shown.state.command(&self.motor, target);
         }
         let surface = followed.and_then(|it| it.surface);
-        let course = match surface {
-            Some((surface, _)) => Course::Surface(surface),
-            None => course(&shown.state),
+        let course = match (followed, surface) {
+            (Some(it), _) if !mv.unknown_start.is_empty() => {
+                let [most_w, least_w] = it.extremes;
+                Course::Unknown([most_w.max(0.0), (-least_w).max(0.0)])
+            }
+            (_, Some((surface, _))) => Course::Surface(surface),
+            _ => course(&shown.state),
         };
         let duration_s = judged.duration_s;
-        // The motion of others is not shown either.
-        let known = duration_s.is_finite() && mv.unknown_start.is_empty();
-        if known && duration_s > 0.0 {
+        if duration_s.is_finite() && duration_s > 0.0 {
             shown.turnings.push(Turning {
                 duration_s,
                 rest: None,

@@ -12,6 +12,15 @@ use gwatt_plan::period;
 /// Halvings that find where the clamp of G96 begins.
 const HALVINGS: u32 = 60;
 
+/// A spindle of which nothing is known.
+const UNKNOWN: SpindleInstant = SpindleInstant {
+    speed_rpm: f64::NAN,
+    accel_rpm_s: f64::NAN,
+    torque_nm: f64::NAN,
+    power_w: f64::NAN,
+    cutting_w: 0.0,
+};
+
 /// How it turns.
 #[derive(Debug, Clone)]
 pub(super) enum Course {
@@ -20,6 +29,8 @@ pub(super) enum Course {
     Run(SpindleTrace, f64),
     /// G96.
     Surface(Surface),
+    /// G96 next to an unknown motion of X: the most that it draws and feeds back, W.
+    Unknown([f64; 2]),
 }
 
 /// The spindle during one move, or while the axes wait.
@@ -64,7 +75,7 @@ impl Turning {
     #[must_use]
     pub fn switches_s(&self, [from, to]: [f64; 2], x_mm: impl Fn(f64) -> f64) -> Vec<f64> {
         match &self.course {
-            Course::Steady(_) => Vec::new(),
+            Course::Steady(_) | Course::Unknown(_) => Vec::new(),
             Course::Run(trace, since_s) => {
                 let switches = trace.instants().map(|t| t - since_s);
                 switches.filter(|t| *t > from && *t < to).collect()
@@ -98,24 +109,34 @@ impl Turning {
         x_mm: [f64; 2],
         instant: &mut Instant,
     ) {
+        let cutting_w = self.cutting_w + self.cutting_w_s_mm * instant.path_mm_s;
         let steady = |speed: f64| [period::Motion { speed, accel: 0.0 }; 2];
-        let [now, nearby] = match &self.course {
-            Course::Steady(speed) => steady(*speed),
-            Course::Run(trace, since_s) => trace.at_both([since_s + t, since_s + inside]),
+        let turns = match &self.course {
+            Course::Steady(speed) => Some(steady(*speed)),
+            Course::Run(trace, since_s) => Some(trace.at_both([since_s + t, since_s + inside])),
             Course::Surface(surface) => {
                 let velocity_mm_s = instant.axes[0].velocity_mm_s;
-                [surface.motion(x_mm[0], x_mm[1], velocity_mm_s); 2]
+                Some([surface.motion(x_mm[0], x_mm[1], velocity_mm_s); 2])
             }
+            Course::Unknown(_) => None,
         };
-        let torque_nm = self.power.torque_turning_nm(now.accel, nearby.speed);
-        let motor_w = self.power.turned_w(now.speed, torque_nm);
-        let cutting_w = self.cutting_w + self.cutting_w_s_mm * instant.path_mm_s;
-        instant.spindle = SpindleInstant {
-            speed_rpm: now.speed,
-            accel_rpm_s: now.accel,
-            torque_nm,
-            power_w: self.base_load_w + motor_w,
-            cutting_w,
+        let mut motor_w = f64::NAN;
+        instant.spindle = UNKNOWN;
+        if let Some([now, nearby]) = turns {
+            let torque_nm = self.power.torque_turning_nm(now.accel, nearby.speed);
+            motor_w = self.power.turned_w(now.speed, torque_nm);
+            instant.spindle = SpindleInstant {
+                speed_rpm: now.speed,
+                accel_rpm_s: now.accel,
+                torque_nm,
+                power_w: self.base_load_w + motor_w,
+                cutting_w: 0.0,
+            };
+        }
+        instant.spindle.cutting_w = cutting_w;
+        let [drawn_w, fed_back_w] = match self.course {
+            Course::Unknown(most_w) => most_w,
+            _ => [motor_w.max(0.0), (-motor_w).max(0.0)],
         };
         let index = self.converter;
         let (Some(bus_w), Some(regen_w), Some(converter)) = (
@@ -126,13 +147,14 @@ impl Turning {
             return;
         };
         let more_w = self.base_load_w + cutting_w;
-        if converter.credit_regen {
+        // Of what moves from an unknown start no more is credited than always is.
+        if converter.credit_regen && instant.unknown_axes.is_empty() {
             *bus_w += motor_w + more_w;
             let uncertain_w = self.base_load_w - self.credited_w;
             *regen_w = (uncertain_w - *bus_w).max(0.0);
         } else {
-            *bus_w += motor_w.max(0.0) + more_w;
-            *regen_w += (-motor_w).max(0.0);
+            *bus_w += drawn_w + more_w;
+            *regen_w = (*regen_w + fed_back_w - self.credited_w).max(0.0);
         }
     }
 }

@@ -16,6 +16,7 @@ const LATER = COMPARED ? `on ${COMPARED.names[1]}` : "after";
 const COLOURS = {
   X: "#4269d0", Y: "#e3891b", Z: "#3a9d5d", A: "#c4457a", B: "#7a5ac2", C: "#1c9aa8", U: "#a0673a",
   V: "#6b8e23", W: "#b8860b", E: "#2f7f6f", spindle: "#8f6bb8", cutting: "#d65f4d", "base load": "#9a9a9a",
+  "unknown start, at most": "#d0cdbd",
 };
 
 /** A column of which all values may be the same, or one of a few names. */
