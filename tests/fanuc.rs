@@ -319,7 +319,10 @@ fn state_that_macros_read() {
             last[0], "10 rapid X65.0000 Y40.0000 Z79.0000",
             "{controller}: {found}"
         );
-        assert_eq!(last[1], "9 rapid X17.0000 Y63.0000", "{controller}: {found}");
+        assert_eq!(
+            last[1], "9 rapid X17.0000 Y63.0000",
+            "{controller}: {found}"
+        );
     }
     for (controller, unknown) in [
         ("fanuc", "#1=#4012"),

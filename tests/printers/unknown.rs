@@ -118,3 +118,50 @@ fn what_is_no_command_is_no_macro() {
                 [axes.X]\nrapid_mm_min = 6000\naccel_mm_s2 = 1000\nmass_kg = 10\n";
     assert_snapshot!(run(&load(text), "M9833\n"), @"unknown-code: M9833 is not a valid word");
 }
+
+/// What moves with another drive draws too, and the machine file does not say what.
+#[test]
+fn drives_that_are_coupled_are_refused() {
+    let refused = |program: &str, what: &str| {
+        let found = if program.starts_with('M') {
+            marlin(program)
+        } else {
+            klipper(program)
+        };
+        let expected = format!(
+            "unsupported-word: `{program}` here is {what}: what its drive draws is not known"
+        );
+        assert_eq!(found, expected);
+    };
+    let carriage = "a second carriage that moves with the first one";
+    refused("SET_DUAL_CARRIAGE CARRIAGE=1 MODE=copy", carriage);
+    refused("SET_DUAL_CARRIAGE CARRIAGE=1 MODE=MIRROR", carriage);
+    let extruder = "an extruder that moves with another one";
+    refused(
+        "SYNC_EXTRUDER_MOTION EXTRUDER=extruder1 MOTION_QUEUE=extruder",
+        extruder,
+    );
+    for alone in [
+        "SET_DUAL_CARRIAGE CARRIAGE=0 MODE=PRIMARY\n",
+        "SET_DUAL_CARRIAGE CARRIAGE=1\n",
+        "SYNC_EXTRUDER_MOTION EXTRUDER=extruder1 MOTION_QUEUE=\n",
+        "SYNC_EXTRUDER_MOTION EXTRUDER=extruder1 MOTION_QUEUE=extruder1\n",
+    ] {
+        assert!(!klipper(alone).contains("unsupported-word"), "{alone}");
+    }
+    refused("M605 S2 X100", carriage);
+    assert!(!marlin("M605 S1\n").contains("unsupported-word"));
+}
+
+/// Marlin and Klipper have no G93 and no G95: F stays in mm/min there, which would be read slower.
+#[test]
+fn feed_modes_of_machine_tools_are_refused() {
+    for mode in ["G93", "G95"] {
+        for found in [marlin(mode), klipper(mode)] {
+            assert!(
+                found.starts_with(&format!("unknown-code: {mode} ")),
+                "{found}"
+            );
+        }
+    }
+}

@@ -4,6 +4,7 @@ use super::early::rises;
 use super::left_out::{note_levelling, note_uncounted};
 use super::line::{Head, Parameters, Text, has, holds_word, value};
 use super::position::Mover;
+use super::second_drive::{SECOND_CARRIAGE, refuse_second_drive};
 use super::verify_checksum;
 use crate::code::{GCode, Motion};
 use crate::control::{Control, Run};
@@ -258,6 +259,12 @@ impl Control<'_> {
         } else if shifts {
             self.shift_axes(parameters);
             run.act(ActionKind::Other, action);
+        } else if (letter, number) == (b'M', 6050)
+            && listed(&printer.unknown_moves)
+            && value(parameters, b'S').is_some_and(|mode| mode >= 2.0)
+        {
+            // Duplication and mirrored duplication.
+            refuse_second_drive(run, SECOND_CARRIAGE, span);
         } else if listed(&printer.unknown_moves) {
             self.listed_moves(run, (letter, number, span));
             if has(parameters, b'F') {

@@ -21,6 +21,7 @@ mod ordinary;
 mod position;
 mod retract;
 mod scale;
+mod second_drive;
 mod settings;
 #[cfg(test)]
 mod testing;

@@ -8,6 +8,7 @@ use super::kept::Back;
 use super::left_out::{note_advance, note_levelling};
 use super::line::{Parameters, Text};
 use super::position::Mover;
+use super::second_drive::{refuse_second_drive, second_drive};
 use crate::control::{Control, Run};
 use crate::flow::library;
 use crate::jump::Transfer;
@@ -42,6 +43,9 @@ impl Control<'_> {
         let unknown = unknown && !whole(&printer.ignored_macros);
         let upper = name.to_ascii_uppercase();
         let upper = upper.as_slice();
+        if let Some(what) = second_drive(text, upper, at) {
+            return refuse_second_drive(run, what, span);
+        }
         let shifts = listed(&printer.shifts);
         let moves = shifts && text.argument(at, "MOVE").is_some_and(|value| value != b"0");
         if listed(&printer.ignored_macros) && !unknown {

@@ -2,13 +2,18 @@
 
 use super::iso;
 use super::kinds::{BareG92, CycleWords, KeptVariables, LanguageRules, Macros, ToolLengths};
-use crate::g_codes::common_g_code;
+use crate::g_codes::{common_g_code, refused_g_name};
 
 pub(crate) const RULES: LanguageRules = LanguageRules {
-    // Marlin: G60 and G61 save a position and return to it.
+    // Marlin: G60 and G61 save a position and return to it. It and Klipper have no G93 and no
+    // G95, and F stays per minute; of RepRapFirmware newer versions alone have G93.
     g_code: |number| match number {
-        600..=640 => None,
+        600..=640 | 930 | 950 => None,
         _ => common_g_code(number),
+    },
+    refused_g: |number| match number {
+        930 | 950 => "a feed mode that printers do not have",
+        _ => refused_g_name(number),
     },
     is_state_word: |_| false,
     extruder_modes: true,
