@@ -45,7 +45,7 @@ pub fn run(args: &CheckArgs, terminal: Terminal) -> Result<Verdict> {
     let mut frames = pictures.open()?;
     let wanted = Wanted {
         page: pictures.is_any(),
-        figures: matches!(args.format, Format::Json | Format::Jsonl),
+        figures: args.format == Format::Jsonl,
         changes: args.format == Format::Sarif,
     };
     let (_progress, one_done) = progress(&mut programs, terminal, args.quiet);

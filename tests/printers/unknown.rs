@@ -129,9 +129,8 @@ fn drives_that_are_coupled_are_refused() {
             klipper(program)
         };
         let name = program.split(' ').next().unwrap();
-        let expected = format!(
-            "unsupported-word: `{name}` here is {what}: what its drive draws is not known"
-        );
+        let expected =
+            format!("unsupported-word: `{name}` here is {what}: what its drive draws is not known");
         assert_eq!(found.trim_end(), expected);
     };
     let carriage = "a second carriage that moves with the first one";

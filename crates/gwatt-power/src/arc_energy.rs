@@ -16,8 +16,10 @@ use std::f64::consts::TAU;
 /// Cells of a piece in which a change of sign is looked for. A pair of changes
 /// inside one cell is left to the adaptive quadrature.
 const CELLS: usize = 6;
-/// Halvings that locate a change of sign.
-const HALVINGS: u32 = 45;
+/// Steps at most in which a change of sign is located, and how nearly, as a share of its cell:
+/// what the kink is off by changes the integral by the square of it.
+const STEPS: u32 = 60;
+const APART: f64 = 1e-9;
 /// Points of the average over a turn.
 const TURN_POINTS: u32 = 64;
 
@@ -95,17 +97,9 @@ fn kinks(
             let values = motions.map(|motion| value(&motion));
             for cell in 0..CELLS {
                 if values[cell] * values[cell + 1] < 0.0 {
-                    let rises = values[cell + 1] > 0.0;
-                    let (mut low, mut high) = (instants[cell], instants[cell + 1]);
-                    for _ in 0..HALVINGS {
-                        let middle = 0.5 * (low + high);
-                        if (value(&circle.motion(phase, middle)) > 0.0) == rises {
-                            high = middle;
-                        } else {
-                            low = middle;
-                        }
-                    }
-                    found.push(high);
+                    let ends = [instants[cell], instants[cell + 1]];
+                    let values = [values[cell], values[cell + 1]];
+                    found.push(zero(|t| value(&circle.motion(phase, t)), ends, values));
                 }
             }
         }
@@ -113,6 +107,39 @@ fn kinks(
     found.push(to);
     found.sort_unstable_by(f64::total_cmp);
     found
+}
+
+/// Where a function changes its sign between two instants, at which it has these values.
+///
+/// Source: regula falsi by Illinois (Dowell and Jarratt 1971).
+fn zero(
+    value: impl Fn(f64) -> f64,
+    [mut a, mut b]: [f64; 2],
+    [mut at_a, mut at_b]: [f64; 2],
+) -> f64 {
+    let near = APART * (b - a);
+    for _ in 0..STEPS {
+        if (b - a).abs() <= near {
+            break;
+        }
+        let t = b - at_b * (b - a) / (at_b - at_a);
+        let at_t = value(t);
+        if at_t == 0.0 {
+            return t;
+        }
+        if at_t * at_b < 0.0 {
+            (a, at_a) = (b, at_b);
+        } else {
+            at_a *= 0.5;
+        }
+        // Closer than rounding shows.
+        let last = (t - b).abs() <= near;
+        (b, at_b) = (t, at_t);
+        if last {
+            break;
+        }
+    }
+    b
 }
 
 /// Force and electrical power of one axis.

@@ -43,15 +43,15 @@ const GAUSS_CENTRE: f64 = 0.417_959_183_673_469_4;
 
 /// The integral of `f` from `from` to `to`.
 pub(super) fn integral(f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
-    let (whole, _, magnitude) = rule(&f, from, to);
+    let (whole, error, magnitude) = rule(&f, from, to);
+    if !whole.is_finite() || error <= TOLERANCE * magnitude {
+        return whole;
+    }
     let allowed = TOLERANCE * magnitude / (to - from);
     let mut budget = BUDGET;
     let mut sum = 0.0;
     let mut stack = ArrayVec::<(f64, f64), 64>::new();
     stack.push((from, to));
-    if !whole.is_finite() {
-        return whole;
-    }
     while let Some((a, b)) = stack.pop() {
         let (value, error, _) = rule(&f, a, b);
         let middle = 0.5 * (a + b);
