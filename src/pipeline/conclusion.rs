@@ -38,11 +38,13 @@ pub(super) fn conclude(
         reasons = Reasons::default();
     }
     reasons.extend(found);
-    for reason in &mut reasons.list {
-        if reason.rule == DOES_NOT_FIT {
-            reason.help = Some(how.allowed.else_helps().to_owned());
-        }
-    }
+    let help = if reasons.list.iter().any(|it| it.rule != DOES_NOT_FIT) {
+        NEXT_TO_OTHERS
+    } else {
+        how.allowed.else_helps(has_other_words(machine))
+    };
+    let unfit = reasons.list.iter_mut().filter(|it| it.rule == DOES_NOT_FIT);
+    unfit.for_each(|reason| reason.help = Some(help.to_owned()));
     let missed = after.over_time.iter().filter(|it| !it.rating.fits());
     for reason in missed.map(OverTime::reason) {
         reasons.count += 1;
@@ -94,6 +96,16 @@ pub(super) fn conclude(
         prices: Vec::new(),
         ideal: None,
     }
+}
+
+/// What helps where other blocks stay as they are.
+const NEXT_TO_OTHERS: &str =
+    "blocks next to it may be what draws this much: mend those named for other reasons first";
+
+/// Whether there are words for accelerations, which other strategies write.
+pub(super) fn has_other_words(machine: &Machine) -> bool {
+    let controller = &machine.controller;
+    !controller.knobs.is_empty() || !controller.wired.is_empty()
 }
 
 /// That something is right only as the switches of block delete are set.

@@ -125,7 +125,7 @@ fn place_conditions(machine: &Machine, options: &Options) -> impl Iterator<Item 
     let sources = [
         (
             machine.offsets.iter().any(Option::is_some) || !machine.further_offsets.is_empty(),
-            "work offsets are those under [offsets] of the machine file",
+            "work offsets are those under [offsets] of the machine file: with others this does not hold",
         ),
         (
             axes().any(|axis| axis.reference_mm.is_some()),

@@ -14,6 +14,7 @@ use super::expand::{
 use super::pace::{by_acceleration, sooner};
 use super::pause::limit_waiting;
 use super::preset_notes::{NO_PRESET, NOT_SET};
+use super::quoted::quote_program;
 use super::readable::readable;
 use super::rounds::{Job, Rounds, restart};
 use super::row::Detail;
@@ -50,7 +51,10 @@ pub fn limit<R: Read + Seek + Send, W: Write + Restart + Send>(
         how,
         rounds: Rounds::All,
     };
-    limit_as_wanted(&mut input, machine, options, wanted, &mut output, &mut rows)
+    let mut summary =
+        limit_as_wanted(&mut input, machine, options, wanted, &mut output, &mut rows)?;
+    quote_program(input, &mut summary)?;
+    Ok(summary)
 }
 
 /// Why moves of a program cannot be lowered, as far as its first round of limiting shows: of long

@@ -35,6 +35,7 @@ mod pace;
 mod pause;
 mod preset_notes;
 mod price;
+mod quoted;
 mod readable;
 mod worker;
 mod restart;

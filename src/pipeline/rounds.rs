@@ -7,7 +7,7 @@ use std::thread;
 
 use super::batch::Batch;
 use super::certify::{Certified, Certifier};
-use super::conclusion::conclude;
+use super::conclusion::{conclude, has_other_words};
 use super::derate::LAST_ROUND;
 use super::looped_program::LoopedProgram;
 use super::row::Detail;
@@ -23,13 +23,13 @@ use crate::power::{Lower, PowerModel};
 const BATCHES: usize = 2;
 
 /// Why there is no further round.
-pub(super) fn last_round(depths: &Depths, allowed: Allowed) -> Diagnostic {
+pub(super) fn last_round(depths: &Depths, allowed: Allowed, machine: &Machine) -> Diagnostic {
     let rounds = depths.rounds();
     Diagnostic::error(
         LAST_ROUND,
         format!("blocks exceed the limit next to others that were lowered, after {rounds} rounds"),
     )
-    .help(allowed.else_helps())
+    .help(allowed.else_helps(has_other_words(machine)))
 }
 
 /// One way of limiting, in as many rounds as it takes.
@@ -135,7 +135,9 @@ impl Job<'_> {
             } = *self;
             let mut summary = conclude(machine, target, paths, how, written, certified);
             if stuck && !in_vain {
-                summary.reasons.push(last_round(&depths, how.allowed));
+                summary
+                    .reasons
+                    .push(last_round(&depths, how.allowed, machine));
             }
             let paces = depths.paces().cloned();
             return Ok(Attempt {

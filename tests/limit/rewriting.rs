@@ -176,3 +176,22 @@ fn restored_before_it_is_read() {
         "F600.\nG1 X400. F24000.\nG0 F600.\n#1=#[4100+9]\nG1 X[#4109]\nM30\n"
     );
 }
+
+/// grbl puts G1 in force at M2 and M30 and goes on with what follows: nothing has to be put back.
+#[test]
+fn the_end_of_a_program_puts_its_own_word_in_force() {
+    let rig = Rig {
+        controller: "grbl",
+        ..RIG
+    };
+    for end in ["M2", "M30"] {
+        let program = format!("G21 G90\nG0 X1\nG1 X10 F1000\nG0 X11\n{end}\nM9\n");
+        assert_eq!(rig.fits(&program), program);
+    }
+    // What follows runs as the feed that the control makes of it.
+    let program = "G21 G90\nG1 X1 F1000\nG0 X400\nM2\nX2\n";
+    assert_eq!(
+        rig.fits(program),
+        "G21 G90\nG1 X1 F1000\nG1 X400 F24000\nM2\nX2 F1000\n"
+    );
+}

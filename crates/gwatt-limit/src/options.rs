@@ -100,13 +100,15 @@ impl Allowed {
         unverified: false,
     };
 
-    /// What may help where no value of the permitted words is enough, for a person.
+    /// What may help where no value of the permitted words is enough, for a person;
+    /// `has_other_words`: the control has words for accelerations, which other strategies write.
     #[must_use]
-    pub fn else_helps(self) -> &'static str {
-        if self.feed {
-            "another strategy may help"
-        } else {
-            "another strategy, or --allow feed, may help"
+    pub fn else_helps(self, has_other_words: bool) -> &'static str {
+        match (self.feed, has_other_words) {
+            (true, true) => "another strategy may help",
+            (false, true) => "another strategy, or --allow feed, may help",
+            (true, false) => "a larger converter helps, or less base load and friction",
+            (false, false) => "--allow feed may help",
         }
     }
 

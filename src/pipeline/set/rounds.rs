@@ -242,7 +242,9 @@ impl<'a> Job<'a> {
             let mut summary = conclude(machine, target, paths, how, written, certified);
             if round.stopped {
                 summary.certified = false;
-                summary.reasons.push(last_round(&round.depths, how.allowed));
+                summary
+                    .reasons
+                    .push(last_round(&round.depths, how.allowed, machine));
             }
             if let Some(program) = self.programs.get(number) {
                 as_its_own(&mut summary, &program.name);

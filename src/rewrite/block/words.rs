@@ -26,6 +26,10 @@ impl Rewriter<'_> {
             return;
         }
         if !facts.uses_motion {
+            if own.is_none() && view.before.motion != view.after.motion {
+                // The end of a program puts another word in force by itself.
+                self.written.motion = view.after.motion;
+            }
             return;
         }
         // An end of the program may put another word in force after the motion.
