@@ -302,3 +302,22 @@ fn two_times_of_one_dwell() {
         assert_eq!(RIG.refusal(program)[0].rule, "dwell-time");
     }
 }
+
+/// What does not fit is shown as the program has it, and the help names what can help.
+#[test]
+fn what_does_not_fit_is_shown_as_the_program_has_it() {
+    let rig = Rig {
+        controller: "grbl",
+        ..RIG
+    };
+    let reasons = rig.reasons("G21 G90\nG0 X5\nG0 X400\nG28\nM2\n");
+    let found = reasons.iter().find(|it| it.rule == "does-not-fit").unwrap();
+    assert_eq!((found.line, &*found.text), (3, &b"G0 X400"[..]));
+    assert_eq!(found.message, "");
+    assert_eq!(
+        found.help.as_deref(),
+        Some(
+            "blocks next to it may be what draws this much: mend those named for other reasons first"
+        )
+    );
+}

@@ -192,6 +192,6 @@ fn the_end_of_a_program_puts_its_own_word_in_force() {
     let program = "G21 G90\nG1 X1 F1000\nG0 X400\nM2\nX2\n";
     assert_eq!(
         rig.fits(program),
-        "G21 G90\nG1 X1 F1000\nG1 X400 F24000\nM2\nX2 F1000\n"
+        "G21 G90\nG1 X1 F1000\nG1 X400 F24000\nG0 F1000\nM2\nX2\n"
     );
 }

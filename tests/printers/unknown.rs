@@ -164,3 +164,20 @@ fn feed_modes_of_machine_tools_are_refused() {
         }
     }
 }
+
+/// Prusa's tool changers park a tool with P0; other such words are macros that the machine file
+/// may list.
+#[test]
+fn p0_parks_the_tool() {
+    assert_snapshot!(marlin("G1 X1 F60\nP0 S1 L1 D0; park the tool\nG1 X2\n"), @r"
+    1 feed X0.000>1.000 v1.000
+    2 feed from anywhere XYZE
+    3 feed from anywhere X v1.000
+    note unknown-moves
+    ");
+    let refused = marlin("P7 S1\n");
+    assert!(
+        refused.starts_with("unknown-macro: `P7` is a macro"),
+        "{refused}"
+    );
+}

@@ -202,7 +202,10 @@ impl<'t> Text<'t> {
         }
         let named = letter.is_ascii_alphabetic() && end > start + 1 || letter == b'_';
         let second = self.byte(start + 1);
-        if named && second.is_some_and(|byte| byte.is_ascii_alphabetic() || byte == b'_') {
+        // `P0` of Prusa's tool changers is a command too.
+        let parks = letter == b'P' && second.is_some_and(|byte| byte.is_ascii_digit());
+        let begins_name = second.is_some_and(|byte| byte.is_ascii_alphabetic() || byte == b'_');
+        if named && (begins_name || parks) {
             let name = self.line.get(start..end).unwrap_or_default();
             return (Head::Name(name, span), end);
         }

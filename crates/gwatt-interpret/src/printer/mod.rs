@@ -55,7 +55,7 @@ fn is_command(block: &Block, own_motion: bool) -> bool {
         _ if !block.issues.is_empty() => true,
         Some(first) => match first.letter {
             b'G' => own_motion || !(0.0..4.0).contains(&first.value),
-            letter => matches!(letter, b'M' | b'T'),
+            letter => matches!(letter, b'M' | b'P' | b'T'),
         },
         None => false,
     }

@@ -119,7 +119,8 @@ pub(crate) fn commands(
 /// A command by its name; `None` where it is none.
 pub(crate) fn command(text: &str) -> Option<Command> {
     let name = text.trim().to_ascii_uppercase();
-    if let Some((letter, number)) = word::code(&name) {
+    let code = word::code(&name).filter(|(letter, _)| matches!(letter, b'G' | b'M' | b'T'));
+    if let Some((letter, number)) = code {
         return Some(Command::Code(letter, number));
     }
     let stem = name.strip_suffix('*').unwrap_or(&name);
