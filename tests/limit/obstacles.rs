@@ -313,7 +313,10 @@ fn what_does_not_fit_is_shown_as_the_program_has_it() {
     let reasons = rig.reasons("G21 G90\nG0 X5\nG0 X400\nG28\nM2\n");
     let found = reasons.iter().find(|it| it.rule == "does-not-fit").unwrap();
     assert_eq!((found.line, &*found.text), (3, &b"G0 X400"[..]));
-    assert_eq!(found.message, "");
+    assert_eq!(
+        found.message,
+        "the block still needs 1250.0 W of 1000.0 W, written as `G1 X400`"
+    );
     assert_eq!(
         found.help.as_deref(),
         Some(
