@@ -70,6 +70,8 @@ pub struct Dialect {
     pub m97_calls: bool,
     /// M16 changes the tool as M6 does.
     pub m16_changes_tool: bool,
+    /// J of G84 says how many times as fast a tap comes out.
+    pub taps_return_by_j: bool,
     /// The group of G54 to G59, by which `#4000` and its number reads them; `None`: not known.
     pub work_offset_group: Option<u8>,
     /// G12 and G13 mill circular pockets.

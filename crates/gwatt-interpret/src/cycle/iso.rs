@@ -22,7 +22,7 @@ impl Control<'_> {
         if begins {
             self.special.held = super::Held::default();
         } else if self.special.active != number {
-            self.special.held.tap_h = None;
+            (self.special.held.tap_h, self.special.held.tap_j) = (None, None);
         }
         begins
     }
@@ -49,6 +49,7 @@ impl Control<'_> {
         let initial_mm = self.initial_level(normal, begins);
         self.special.active = number;
         let own = self.d_and_h(number, run);
+        let own = own.and_then(|()| self.return_by_j(number, run));
         let Some(repeats) = own.and_then(|()| self.iso_repeats(number, run)) else {
             return;
         };

@@ -23,6 +23,8 @@ pub(super) struct Held {
     pub(super) tap_q: Option<f64>,
     /// H of a tap (Mazak): 0, or the speed of the return in percent.
     pub(super) tap_h: Option<f64>,
+    /// How many times as fast as its feed a tap comes out.
+    pub(super) tap_j: Option<f64>,
     /// I, J, K of shifts as they were written.
     pub(super) ijk: [Option<f64>; 3],
     /// I, J, K of pecks as they were written.

@@ -66,8 +66,8 @@ impl Control<'_> {
 
     /// How many times as fast as F a tap is retracted, where that is faster.
     fn tap_factor(&self) -> Option<f64> {
-        let by_h = self.tap_return_by_h();
-        let factor = by_h.or(self.machine.controller.language.tap_return_factor);
+        let by_word = self.tap_return_by_word();
+        let factor = by_word.or(self.machine.controller.language.tap_return_factor);
         factor.filter(|factor| *factor > 1.0)
     }
 
@@ -106,7 +106,7 @@ impl Control<'_> {
 
     fn note_return(&self, run: &mut Run<'_, '_>) {
         let language = &self.machine.controller.language;
-        if language.tap_return_factor.is_none() && self.tap_return_by_h().is_none() {
+        if language.tap_return_factor.is_none() && self.tap_return_by_word().is_none() {
             let message = "the way out of a tap counts at the speed of the way in: if the control \
                            returns faster (Haas: Setting 130; Fanuc: extraction override), give \
                            tap_return_factor under [language] in the machine file";

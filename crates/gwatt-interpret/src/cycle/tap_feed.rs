@@ -53,10 +53,29 @@ impl Control<'_> {
         Some(())
     }
 
-    /// The return of a synchronous tap as H gives it, as a multiple of its feed.
-    pub(super) fn tap_return_by_h(&self) -> Option<f64> {
-        let percent = self.special.held.tap_h.filter(|h| *h >= 1.0)?;
-        Some(percent / 100.0)
+    /// Takes J of a tap, where it says how fast that comes out (Haas mill operator's manual, "G84
+    /// Tapping Canned Cycle": retract multiple); `None` where it is no such number.
+    pub(super) fn return_by_j(&mut self, number: u16, run: &mut Run<'_, '_>) -> Option<()> {
+        if !(self.dialect().taps_return_by_j && is_tap(number)) {
+            return Some(());
+        }
+        let Some(multiple) = run.words.take(b'J') else {
+            return Some(());
+        };
+        if !(1.0..=9.0).contains(&multiple) || multiple.fract() != 0.0 {
+            let message = "J of a tap is how many times as fast it comes out, from 1 to 9";
+            run.cycle_value(b'J', message);
+            return None;
+        }
+        self.special.held.tap_j = Some(multiple);
+        Some(())
+    }
+
+    /// The return of a synchronous tap as H or J gives it, as a multiple of its feed.
+    pub(super) fn tap_return_by_word(&self) -> Option<f64> {
+        let held = &self.special.held;
+        let by_h = held.tap_h.filter(|percent| *percent >= 1.0);
+        by_h.map(|percent| percent / 100.0).or(held.tap_j)
     }
 
     /// The speed of a tap, mm/s, where it is not that of the feed mode.

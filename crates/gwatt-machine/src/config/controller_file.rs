@@ -159,6 +159,8 @@ pub(crate) struct LanguageTable {
     pub(crate) m97_calls: Option<bool>,
     /// M16 changes the tool as M6 does, as on a Haas; default false.
     pub(crate) m16_changes_tool: Option<bool>,
+    /// J of G84 says how many times as fast a tap comes out, as on a Haas; default false.
+    pub(crate) taps_return_by_j: Option<bool>,
     /// The group of G54 to G59, by which macros read the one in force: 14 for #4014 (Fanuc), 12
     /// for #4012 (Haas, Mitsubishi); default: not known.
     pub(crate) work_offset_group: Option<u8>,

@@ -161,6 +161,7 @@ fn dialect(table: &LanguageTable) -> Dialect {
         inverse_angles_are_known: false,
         m97_calls: table.m97_calls.unwrap_or(false),
         m16_changes_tool: table.m16_changes_tool.unwrap_or(false),
+        taps_return_by_j: table.taps_return_by_j.unwrap_or(false),
         work_offset_group: table.work_offset_group,
         circular_pocket: table.circular_pocket.unwrap_or(false),
         holes_along_z: table.holes_along_z.unwrap_or(false),
