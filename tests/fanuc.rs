@@ -163,6 +163,17 @@ fn taps_return_faster_and_peck() {
     assert!(notes("fanuc", program).contains(&"tap-pecks"));
 }
 
+/// Haas: J of G84 is how many times as fast the tap comes out, until the next cycle.
+#[test]
+fn a_tap_returns_as_j_says() {
+    let program = "S500 M3\nG0 Z10.\nG99 G84 X5. Z-5. R2. F500. J2\nX10.\nG80\nG84 X1. Z-5. R2.\n";
+    assert_snapshot!(moves("haas", program), @"");
+    for wrong in ["J0", "J1.5", "J10"] {
+        let found = moves("haas", &format!("S500 M3\nG84 X5. Z-5. R2. F500. {wrong}\n"));
+        assert!(found.contains("J of a tap is how many times as fast"), "{found}");
+    }
+}
+
 /// Lengths without a point are noted wherever they stand; a level of G05.1 is none.
 #[test]
 fn numbers_without_a_point_are_noted_in_corners_and_arguments() {

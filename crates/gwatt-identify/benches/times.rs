@@ -40,16 +40,17 @@ fn slow_noise(samples: usize, size: f64, share: f64, random: &mut Random) -> Vec
         .collect()
 }
 
-/// Acceleration of a table that a mass swings on at 40 Hz, with friction of the table.
-fn accelerated(torque: &[f64], viscous: f64, coulomb: f64) -> Vec<f64> {
+/// Position and acceleration of a table that a mass swings on at 40 Hz, with friction of the
+/// table.
+fn moved(torque: &[f64], viscous: f64, coulomb: f64) -> (Vec<f64>, Vec<f64>) {
     const FINE: usize = 20;
     let (table, side) = (0.016, 0.008);
     let w = TAU * 40.0;
     let (spring, damper) = (side * w * w, 0.06 * side * w);
     let step_s = PERIOD_S / FINE as f64;
     let (mut x, mut v) = ([0.0; 2], [0.0; 2]);
-    let accelerations = torque.iter().map(|torque| {
-        let mut first = 0.0;
+    let moved = torque.iter().map(|torque| {
+        let (mut first, before) = (0.0, x[0]);
         for step in 0..FINE {
             let [at, speed] = [x, v].map(|[table, side]: [f64; 2]| side - table);
             let pull = spring * at + damper * speed;
@@ -63,9 +64,9 @@ fn accelerated(torque: &[f64], viscous: f64, coulomb: f64) -> Vec<f64> {
                 *x += *v * step_s;
             }
         }
-        first
+        (before, first)
     });
-    accelerations.collect()
+    moved.unzip()
 }
 
 fn noisy(x: Vec<f64>, share: f64, random: &mut Random) -> Vec<f64> {
@@ -77,9 +78,19 @@ fn noisy(x: Vec<f64>, share: f64, random: &mut Random) -> Vec<f64> {
 fn by_torque(samples: usize, viscous: f64, coulomb: f64, noise: f64) -> Recording {
     let mut random = Random(1);
     let torque = slow_noise(samples, 10.0, 0.25, &mut random);
-    let motion = accelerated(&torque, viscous, coulomb);
+    let (_, motion) = moved(&torque, viscous, coulomb);
     let motion = noisy(motion, noise, &mut random);
     of((Quantity::Force, torque), (Quantity::Acceleration, motion))
+}
+
+/// Read by an encoder of 20 bits.
+fn by_position(samples: usize, viscous: f64, coulomb: f64) -> Recording {
+    let torque = slow_noise(samples, 10.0, 0.25, &mut Random(1));
+    let (position, _) = moved(&torque, viscous, coulomb);
+    let step = TAU / f64::from(1 << 20);
+    let read = position.iter().map(|x| step * libm::round(x / step));
+    let motion = read.collect();
+    of((Quantity::Force, torque), (Quantity::Position, motion))
 }
 
 /// A load that follows a command with an anti-resonance at 40 Hz, 5 ms late.
@@ -136,7 +147,7 @@ fn of(input: (Quantity, Vec<f64>), output: (Quantity, Vec<f64>)) -> Recording {
 /// A name, how it is identified, and the recording that goes with it.
 type Case = (&'static str, Method, fn() -> Recording);
 
-const CASES: [Case; 14] = [
+const CASES: [Case; 17] = [
     ("16-s-friction-exact", Method::Iv, || {
         by_torque(SHORT, 0.048, 0.0, 0.0)
     }),
@@ -153,6 +164,15 @@ const CASES: [Case; 14] = [
     ("16-s-arx", Method::Arx, || by_torque(SHORT, 0.0, 0.0, 0.01)),
     ("16-s-subspace", Method::Subspace, || {
         by_torque(SHORT, 0.0, 0.0, 0.01)
+    }),
+    ("16-s-dry-position", Method::Iv, || {
+        by_position(SHORT, 0.048, 0.1)
+    }),
+    ("1000000-position", Method::Iv, || {
+        by_position(LONG, 0.0, 0.0)
+    }),
+    ("1000000-dry-position", Method::Iv, || {
+        by_position(LONG, 0.048, 0.1)
     }),
     ("1000000-dry", Method::Iv, || {
         by_torque(LONG, 0.048, 0.1, 0.01)

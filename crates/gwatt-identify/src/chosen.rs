@@ -13,6 +13,11 @@ pub const COMPARED: usize = 8_000;
 /// Samples on which the best of them are; the last fit takes all.
 pub const CHOSEN: usize = 24_000;
 
+/// Samples of a long recording on which what is found on few of them is brought nearer to
+/// what suits all, and small things are decided: a step on all of a million takes as long as
+/// ten on these.
+pub const MANY: usize = 4 * CHOSEN;
+
 /// Lines on which modes are looked for, about.
 pub const COARSE: usize = 700;
 
@@ -41,6 +46,12 @@ pub fn fewer_rows(rows: &Data<'_>, compared: usize, band_rad_s: f64) -> Option<F
     (compared > COMPARED)
         .then(|| FewerRows::of(rows, band_rad_s))
         .flatten()
+}
+
+/// The first samples, where they are much fewer than all; `None` where all are looked at.
+#[must_use]
+pub fn many<'a>(data: &Data<'a>) -> Option<Data<'a>> {
+    (data.len() > 2 * MANY).then(|| data.head(MANY))
 }
 
 /// True where a filter makes white what is left.

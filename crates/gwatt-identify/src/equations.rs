@@ -267,25 +267,23 @@ impl Equations {
         in_band(column, self.bandwidth_hz, self.raw.period_s)
     }
 
-    /// Adds columns, sample by sample; those without samples are 0.
-    pub(super) fn add(&mut self, columns: &[Vec<f64>]) {
+    /// Adds a column, sample by sample; one without samples is 0.
+    pub(super) fn add(&mut self, column: &[f64]) {
         let t = self.raw.period_s;
-        let none = vec![0.0; self.inside.force.len()];
-        for column in columns {
-            let inside = if column.is_empty() {
-                none.clone()
+        let none = || vec![0.0; self.inside.force.len()];
+        let inside = if column.is_empty() {
+            none()
+        } else {
+            self.in_band(column)
+        };
+        if let Some(band) = &mut self.above {
+            band.further.push(if column.is_empty() {
+                vec![0.0; inside.len()]
             } else {
-                self.in_band(column)
-            };
-            self.inside.further.push(inside);
-            if let Some(band) = &mut self.above {
-                band.further.push(if column.is_empty() {
-                    none.clone()
-                } else {
-                    above_band(column, self.bandwidth_hz, t)
-                });
-            }
+                above_band(column, self.bandwidth_hz, t)
+            });
         }
+        self.inside.further.push(inside);
     }
 
     /// Puts another force into the place of the recorded one.

@@ -1,5 +1,6 @@
 //! A plain word on what was identified.
 
+use std::f64::consts::TAU;
 use std::fmt;
 
 use super::certainty;
@@ -8,6 +9,7 @@ use super::figure::Figure;
 use super::flexible::{Flexible, Root};
 use super::power_fit::PowerModel;
 use super::rigid::Rigid;
+use super::slow_motion::SLOW_HZ;
 
 /// A plain word.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -160,6 +162,8 @@ const MOSTLY_MISSED: f64 = 0.04;
 /// So many times as much as noise would leave is more than noise: noise of a sensor is
 /// as strong above the band as within, or stronger.
 const NOISY: f64 = 2.0;
+/// Frequencies that differ by less, as a share, are next to each other.
+const NEXT_TO: f64 = 0.2;
 /// What may be left where what is left comes and goes.
 const UNSTEADY: f64 = 0.3;
 
@@ -297,7 +301,24 @@ pub fn flexible(axis: &Flexible) -> Judgement {
     if misses || verdict == Judgement::Good && sticks {
         return Judgement::MoreThanNoise;
     }
+    if verdict == Judgement::Good && swings_in_slow_motion(axis) {
+        return Judgement::DoesNotFit;
+    }
     verdict
+}
+
+/// Whether an axis swings as slowly as it was taken as rigid to find its friction: the two
+/// contradict each other. A pole next to a zero swings little.
+fn swings_in_slow_motion(axis: &Flexible) -> bool {
+    let slow_rad_s = TAU * SLOW_HZ;
+    let zeros = || axis.zeros.iter().chain(&axis.unclear_zeros);
+    let apart = |a: &Root, b: &Root| libm::log(a.omega_rad_s.value / b.omega_rad_s.value).abs();
+    let swings = |pole: &Root| {
+        let is_slow = pole.rings() && pole.omega_rad_s.value < slow_rad_s;
+        is_slow && zeros().all(|zero| apart(zero, pole) > NEXT_TO)
+    };
+    let rubs = axis.viscous.is_some() || axis.coulomb.is_some();
+    rubs && axis.poles.iter().any(swings)
 }
 
 /// Whether a model misses more than it may: what the input would explain of what is

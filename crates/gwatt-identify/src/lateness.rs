@@ -65,7 +65,7 @@ fn with_jerk(all: &[Equations]) -> Vec<Equations> {
     for equations in &mut wider {
         equations.above = None;
         let column = jerk(equations);
-        equations.add(&[column]);
+        equations.add(&column);
     }
     wider
 }

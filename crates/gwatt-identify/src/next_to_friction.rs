@@ -9,7 +9,7 @@
 use nalgebra::DVector;
 
 use super::candidate_models::{CANCELLED_SHARE, cancelled, lean};
-use super::chosen::{Chosen, LAGS, filtered};
+use super::chosen::{Chosen, LAGS, filtered, many};
 use super::data::Data;
 use super::estimate::Estimate;
 use super::noise::Whiteness;
@@ -95,10 +95,19 @@ pub fn with_errors_of_turning(data: &Data<'_>, taps: &[f64], mut found: Estimate
         return found;
     }
     let delay_is_free = found.count > parameters(&found.transfer, false).len();
-    let fitting = Fitting::new(data.without_turning(), taps);
-    if let Some(other) = fitting.refine(&found.transfer, delay_is_free, Effort::FULL) {
-        let of = |found: &Estimate| parameters(&found.transfer, delay_is_free);
-        let apart = of(&found).into_iter().zip(of(&other)).map(|(a, b)| a - b);
+    let fit = |data: Data<'_>, from: &TransferFunction| {
+        let fitting = Fitting::new(data, taps);
+        fitting.refine(from, delay_is_free, Effort::FULL)
+    };
+    // How it turns round is the same all the time.
+    let first = many(data);
+    let known = first.and_then(|first| fit(first, &found.transfer));
+    let known = known.map_or_else(|| found.transfer.clone(), |known| known.transfer);
+    let looked_at = first.unwrap_or(*data);
+    if let Some(other) = fit(looked_at.without_turning(), &known) {
+        let of = |model: &TransferFunction| parameters(model, delay_is_free);
+        let apart = of(&known).into_iter().zip(of(&other.transfer));
+        let apart = apart.map(|(a, b)| a - b);
         let apart = DVector::from_iterator(found.count, apart);
         if apart.len() == found.covariance.nrows() {
             found.covariance += &apart * apart.transpose();

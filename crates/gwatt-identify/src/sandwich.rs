@@ -6,32 +6,35 @@ use nalgebra::DMatrix;
 /// and autocorrelation consistent covariance matrix": `inverse` is that of the normal
 /// matrix, `scores` has the rows of each stretch, each times its residual, one after the
 /// other.
+///
+/// Products of rows count by how many windows of so many neighbours have both: squares of the
+/// sums over all windows are the same, and a fraction of the work.
 pub(super) fn sandwich(scores: &[Vec<f64>], inverse: &DMatrix<f64>) -> DMatrix<f64> {
     let width = inverse.nrows();
     let n = scores.iter().map(Vec::len).sum::<usize>() / width.max(1);
-    let lags = lags(n);
+    let length = lags(n) + 1;
     let mut middle = DMatrix::zeros(width, width);
     for stretch in scores {
-        for lag in 0..=lags {
-            let weight = 1.0 - lag as f64 / (lags as f64 + 1.0);
-            let later = stretch.get(lag * width..).unwrap_or_default();
-            let pairs = stretch.chunks_exact(width).zip(later.chunks_exact(width));
-            let mut sum = DMatrix::<f64>::zeros(width, width);
-            for (a, b) in pairs {
-                for (j, b) in b.iter().enumerate() {
-                    for (i, a) in a.iter().enumerate() {
-                        sum[(i, j)] += a * b;
-                    }
-                }
+        let rows = stretch.len() / width.max(1);
+        let row = |at: usize| stretch.get(at * width..(at + 1) * width);
+        let mut window = vec![0.0; width];
+        for next in 0..rows + length - 1 {
+            for (sum, x) in window.iter_mut().zip(row(next).unwrap_or_default()) {
+                *sum += x;
             }
-            if lag == 0 {
-                middle += sum;
-            } else {
-                middle += (&sum + sum.transpose()) * weight;
+            let left = next.checked_sub(length).and_then(row);
+            for (sum, x) in window.iter_mut().zip(left.unwrap_or_default()) {
+                *sum -= x;
+            }
+            let columns = middle.as_mut_slice().chunks_exact_mut(width);
+            for (column, b) in columns.zip(&window) {
+                for (slot, a) in column.iter_mut().zip(&window) {
+                    *slot += a * b;
+                }
             }
         }
     }
-    inverse * middle * inverse
+    inverse * middle * inverse / length as f64
 }
 
 /// Over how many rows residuals of so many are correlated.

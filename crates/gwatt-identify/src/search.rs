@@ -3,7 +3,7 @@
 //! dead time by its profile.
 
 use super::chosen::{
-    CHOSEN, COARSE, COMPARED, Chosen, WHITENING_MAX, fewer_rows, filtered, is_white,
+    CHOSEN, COARSE, COMPARED, Chosen, WHITENING_MAX, fewer_rows, filtered, is_white, many,
 };
 use nalgebra::Complex;
 
@@ -196,7 +196,9 @@ fn on_all(
     chosen: &Chosen,
     given: Given,
 ) -> Option<(Estimate, Noise, Option<FrictionLoop>)> {
-    let noise = chosen.noise.clone().closer(raw, &chosen.found.transfer);
+    let first = many(raw).unwrap_or(*raw);
+    let noise = chosen.noise.clone();
+    let noise = noise.closer(&first, &chosen.found.transfer);
     let best = next_to_noise(raw, chosen, given, &noise)?;
     let passed = friction_loop::fitted(raw, &noise, chosen.delay_is_free, &best);
     Some(match passed {
@@ -214,30 +216,76 @@ fn next_to_noise(raw: &Data<'_>, chosen: &Chosen, given: Given, noise: &Noise) -
     let found = &chosen.found.transfer;
     let leaky = noise.held(raw);
     let data = leaky.as_ref().map_or(*raw, |leaky| leaky.data(raw));
-    let fitting = Fitting::new(data, &noise.taps);
     let is_open = given.order.is_none() && given.zeros.is_none();
     let head = data.without_turning().head(CHOSEN);
     let less = (is_open && !data.friction.is_empty())
         .then(|| next_to_friction::without_its_pairs(&head, &noise.taps, chosen));
     let found = less.as_ref().unwrap_or(found);
-    let fit = |from: &TransferFunction| {
-        fitting.settled(fitting.refine(from, chosen.delay_is_free, Effort::FULL)?)
-    };
-    let mut best = fit(found)?;
-    if leaky.is_some() && is_open {
-        // What stood for noise as it was supposed at first stands for nothing now.
-        for less in cancelled(&best.transfer, ONE) {
-            let less = fit(&less).filter(|less| less.criterion() <= best.criterion());
-            best = less.unwrap_or(best);
-        }
-    }
-    drop(fitting);
+    let best = fitted(
+        &data,
+        &noise.taps,
+        chosen,
+        found,
+        leaky.is_some() && is_open,
+    )?;
     let best = next_to_friction::with_errors_of_bursts(&data, &noise.taps, best);
     Some(next_to_friction::with_errors_of_turning(
         &data,
         &noise.taps,
         best,
     ))
+}
+
+/// The fit to all samples; what stood for noise as it was supposed at first may stand for
+/// nothing now.
+fn fitted(
+    data: &Data<'_>,
+    taps: &[f64],
+    chosen: &Chosen,
+    from: &TransferFunction,
+    may_be_less: bool,
+) -> Option<Estimate> {
+    let free = chosen.delay_is_free;
+    let Some(first) = many(data) else {
+        let fitting = Fitting::new(*data, taps);
+        let best = fitting.settled(fitting.refine(from, free, Effort::FULL)?)?;
+        return Some(if may_be_less {
+            without_what_is_cancelled(&fitting, free, best)
+        } else {
+            best
+        });
+    };
+    // What goes on the first samples alone may be needed on all.
+    let on_first = Fitting::new(first, taps);
+    let found = on_first.refine(from, free, Effort::FULL)?;
+    let mut starts = vec![found.transfer.clone()];
+    if may_be_less {
+        let less = without_what_is_cancelled(&on_first, free, found).transfer;
+        if less.order() < starts.first()?.order() {
+            starts.insert(0, less);
+        }
+    }
+    drop(on_first);
+    let fitting = Fitting::new(*data, taps);
+    let as_it_is = Effort {
+        steps: 0,
+        to_beat: f64::MAX,
+    };
+    let each = starts.iter();
+    let each = each.filter_map(|start| fitting.refine(start, free, as_it_is));
+    let best = each.min_by(|a, b| a.criterion().total_cmp(&b.criterion()))?;
+    fitting.settled(fitting.refine(&best.transfer, free, Effort::FULL)?)
+}
+
+/// The model without poles and zeros that cancel, where it is as good.
+fn without_what_is_cancelled(fitting: &Fitting<'_>, free: bool, mut best: Estimate) -> Estimate {
+    for less in cancelled(&best.transfer, ONE) {
+        let less = fitting.refine(&less, free, Effort::FULL);
+        let less = less.and_then(|less| fitting.settled(less));
+        let less = less.filter(|less| less.criterion() <= best.criterion());
+        best = less.unwrap_or(best);
+    }
+    best
 }
 
 /// How far the first round or a later one goes.

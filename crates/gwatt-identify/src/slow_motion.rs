@@ -17,7 +17,7 @@ use super::sandwich::{sandwich, widening};
 use super::speeds::{Followed, Speed, are_sums, between, followed, mean_sign, mean_speed, speeds};
 
 /// Band in which friction is looked for, Hz, and as a share of the sampling rate at most.
-const SLOW_HZ: f64 = 5.0;
+pub(super) const SLOW_HZ: f64 = 5.0;
 const SLOW_SHARE: f64 = 0.1;
 /// Below this share of the largest speed an axis counts as standing.
 const STANDING: f64 = 0.005;

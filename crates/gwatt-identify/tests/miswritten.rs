@@ -33,7 +33,7 @@ impl Outcome {
     fn is_off(found: Option<(Figure, f64)>, share: f64) -> bool {
         found.is_some_and(|(figure, truth)| {
             let apart = (figure.value - truth).abs();
-            apart > 3.0 * figure.std && apart > share * truth.abs()
+            apart > 2.0 * figure.std && apart > share * truth.abs()
         })
     }
 

@@ -1,6 +1,7 @@
 //! Periods in position: the spectrum of what is left over the place where it was left.
 
 use std::cmp::Ordering;
+use std::f64::consts::TAU;
 
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
@@ -63,31 +64,59 @@ fn ends(x: &[f64]) -> (f64, f64) {
 }
 
 /// The power at each multiple of 1/(4·range), summed over the recordings, up to the shortest
-/// period that the places show.
+/// period that the places show. That is a small part of the spectrum of all places and the
+/// empty ones after them: it is put together from the spectra of every so manyth place, each
+/// as short as that part.
 fn spectrum(recordings: &[Left], range: f64, places: usize, by_place: bool) -> Vec<f64> {
-    let length = FINER * places;
+    let parts = FINER * PLACES_A_PERIOD;
+    let length = places / PLACES_A_PERIOD;
     let fft = RealFftPlanner::<f64>::new().plan_fft_forward(length);
-    let mut spectrum = fft.make_output_vec();
-    let mut power = vec![0.0; length / (FINER * PLACES_A_PERIOD)];
+    let mut scratch = fft.make_scratch_vec();
+    let mut half = fft.make_output_vec();
+    let turn = |k: usize| {
+        let (sin, cos) = libm::sincos(-TAU * k as f64 / (parts * length) as f64);
+        Complex::new(cos, sin)
+    };
+    let turns: Vec<Complex<f64>> = (0..length).map(turn).collect();
+    let mut power = vec![0.0; length];
     for left in recordings {
-        let mut sums = vec![0.0; length];
-        let (low, _) = ends(&left.position);
-        for ((residual, x), v) in left.residual.iter().zip(&left.position).zip(&left.speed) {
-            let place = ((x - low) / range * places as f64) as usize;
-            let weight = if by_place { v.abs() } else { 1.0 };
-            if let Some(slot) = sums.get_mut(place.min(places - 1)) {
-                *slot += weight * residual;
+        let sums = over_places(left, range, places, by_place);
+        let mut lines = vec![Complex::<f64>::default(); length];
+        for first in (0..parts).rev() {
+            let mut part: Vec<f64> = sums.iter().skip(first).step_by(parts).copied().collect();
+            part.resize(length, 0.0);
+            // The lengths are those of the plan.
+            if fft
+                .process_with_scratch(&mut part, &mut half, &mut scratch)
+                .is_err()
+            {
+                return Vec::new();
+            }
+            let mirrored = half.iter().skip(1).rev().skip(1).map(Complex::conj);
+            let whole = half.iter().copied().chain(mirrored);
+            for ((line, turn), value) in lines.iter_mut().zip(&turns).zip(whole) {
+                *line = *line * turn + value;
             }
         }
-        // The lengths are those of the plan.
-        if fft.process(&mut sums, &mut spectrum).is_err() {
-            return Vec::new();
-        }
-        for (slot, value) in power.iter_mut().zip(&spectrum) {
-            *slot += Complex::norm_sqr(value);
+        for (slot, line) in power.iter_mut().zip(&lines) {
+            *slot += Complex::norm_sqr(line);
         }
     }
     power
+}
+
+/// What is left, summed up by places; with all samples alike, or all places.
+fn over_places(left: &Left, range: f64, places: usize, by_place: bool) -> Vec<f64> {
+    let mut sums = vec![0.0; places];
+    let (low, _) = ends(&left.position);
+    for ((residual, x), v) in left.residual.iter().zip(&left.position).zip(&left.speed) {
+        let place = ((x - low) / range * places as f64) as usize;
+        let weight = if by_place { v.abs() } else { 1.0 };
+        if let Some(slot) = sums.get_mut(place.min(places - 1)) {
+            *slot += weight * residual;
+        }
+    }
+    sums
 }
 
 /// The highest lines that stand out, as their index.
@@ -151,6 +180,30 @@ mod tests {
         assert!(off.fold(f64::INFINITY, f64::min) < 0.1, "{found:?}");
         let sine: Vec<f64> = (0..1000).map(|k| libm::sin(0.3 * f64::from(k))).collect();
         assert!((periodic_in_time(&sine) - 1.0).abs() < 0.05);
+    }
+
+    /// The lines are those of one transform of all places and the empty ones after them.
+    #[test]
+    fn parts_of_a_spectrum_are_those_of_the_whole() {
+        let position: Vec<f64> = (0..500).map(|k| libm::sin(0.02 * f64::from(k))).collect();
+        let left = Left {
+            residual: position.iter().map(|x| libm::cos(60.0 * x) + x).collect(),
+            speed: position.iter().map(|x| (1.0 - x * x).sqrt()).collect(),
+            position,
+        };
+        let (range, places) = (2.0, 1 << 10);
+        let found = spectrum(std::slice::from_ref(&left), range, places, true);
+        let sums = over_places(&left, range, places, true);
+        assert_eq!(found.len(), places / PLACES_A_PERIOD);
+        for (k, found) in found.iter().enumerate() {
+            let mut line = Complex::<f64>::default();
+            for (n, sum) in sums.iter().enumerate() {
+                let turn = -TAU * (k * n) as f64 / (FINER * places) as f64;
+                line += Complex::new(libm::cos(turn), libm::sin(turn)) * sum;
+            }
+            let expected = line.norm_sqr();
+            assert!((found - expected).abs() < 1e-9 * expected.max(1.0), "{k}");
+        }
     }
 
     #[test]

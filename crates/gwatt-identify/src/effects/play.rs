@@ -35,16 +35,25 @@ struct Step {
 }
 
 impl Play {
-    /// How the load's acceleration, and its friction by mass, differ from those that it had
-    /// if it went with the motor. `None` where the speed is not known.
-    pub fn differences(self, raw: &Raw) -> Option<[Vec<f64>; 2]> {
-        let mut out = [Vec::new(), Vec::new()];
-        let [accelerations, rubbing] = &mut out;
+    /// How the load's acceleration differs from that which it had if it went with the motor.
+    /// `None` where the speed is not known.
+    pub fn accelerations(self, raw: &Raw) -> Option<Vec<f64>> {
+        self.differences(raw, |step, _, a| {
+            (step.after - step.before) / raw.period_s - a
+        })
+    }
+
+    /// The same of its friction by mass.
+    pub fn rubbing(self, raw: &Raw) -> Option<Vec<f64>> {
+        self.differences(raw, |step, v, _| {
+            self.friction(step.after) - self.friction(v)
+        })
+    }
+
+    fn differences(self, raw: &Raw, of: impl Fn(&Step, f64, f64) -> f64) -> Option<Vec<f64>> {
+        let mut out = Vec::with_capacity(raw.force.len());
         self.follow(raw, |step, v, a| {
-            let moves_apart = !step.is_pushed;
-            let differs = |difference: f64| if moves_apart { difference } else { 0.0 };
-            accelerations.push(differs((step.after - step.before) / raw.period_s - a));
-            rubbing.push(differs(self.friction(step.after) - self.friction(v)));
+            out.push(if step.is_pushed { 0.0 } else { of(step, v, a) });
         })?;
         Some(out)
     }
@@ -143,7 +152,7 @@ mod tests {
             coulomb: 0.0,
             viscous: 0.0,
         };
-        let [accelerations, _] = play.differences(&raw).unwrap();
+        let accelerations = play.accelerations(&raw).unwrap();
         // 0.125 − 0.1 apart, then 0.025 − 0.2: the load has gone from 1 to −1 m/s.
         for (found, expected) in accelerations.iter().zip([0.0, 0.0, 10.0, -10.0, 0.0, 0.0]) {
             assert!((found - expected).abs() < 1e-9, "{accelerations:?}");

@@ -169,12 +169,12 @@ fn shows_more(all: &[Equations], asked: Option<Friction>) -> bool {
     let mut limit: f64 = 0.0;
     for equations in &mut with {
         let Some(cut_off) = equations.raw.cut_off else {
-            equations.add(&[Vec::new()]);
+            equations.add(&[]);
             continue;
         };
         limit = limit.max(cut_off.level.abs());
         let column = stands(equations);
-        equations.add(&[column]);
+        equations.add(&column);
     }
     let Some(solved) = solve_best(&mut with, asked) else {
         return true;

@@ -372,18 +372,25 @@ pub fn add_known(
 ) -> Option<Vec<f64>> {
     let mut known = theta.get(..terms.width())?.to_vec();
     let mut at = terms.width();
-    let mut apart = Vec::new();
     for shape in shapes {
-        let columns = shape.columns(&equations.raw)?;
-        if shape.is_apart() {
-            apart.extend(columns);
-        } else {
-            known.extend(theta.get(at..at + columns.len())?);
-            equations.add(&columns);
+        if !shape.is_apart() {
+            known.extend(theta.get(at..at + shape.width())?);
+            add(equations, *shape)?;
         }
         at += unknowns(*shape, recordings);
     }
-    equations.add(&apart);
+    for shape in shapes.iter().filter(|shape| shape.is_apart()) {
+        add(equations, *shape)?;
+    }
     known.extend(refit(equations, terms, &known)?);
     Some(known)
+}
+
+/// Adds the columns of a shape.
+fn add(equations: &mut Equations, shape: Shape) -> Option<()> {
+    for unknown in 0..shape.width() {
+        let column = shape.column(&equations.raw, unknown)?;
+        equations.add(&column);
+    }
+    Some(())
 }

@@ -17,16 +17,23 @@ pub struct Settled {
     pub size_stds: Vec<f64>,
 }
 
-/// Columns of a shape for the equations of one recording of several: those of the others are
-/// empty where factors are of a recording.
-fn columns(shape: Shape, equations: &Equations, index: usize, of: usize) -> Option<Vec<Vec<f64>>> {
-    let own = shape.columns(&equations.raw)?;
+/// The column of an unknown of a shape for the equations of one recording of several: where
+/// factors are of a recording, those of the others are empty.
+fn column(
+    shape: Shape,
+    equations: &Equations,
+    recording: usize,
+    unknown: usize,
+) -> Option<Vec<f64>> {
     if !shape.is_apart() {
-        return Some(own);
+        return shape.column(&equations.raw, unknown);
     }
-    let none = |recordings: usize| vec![Vec::new(); recordings * own.len()];
-    let (before, after) = (none(index), none(of - 1 - index));
-    Some([before, own, after].concat())
+    let width = shape.width();
+    if unknown / width == recording {
+        shape.column(&equations.raw, unknown % width)
+    } else {
+        Some(Vec::new())
+    }
 }
 
 /// Unknowns of a shape in so many recordings.
@@ -42,15 +49,15 @@ pub fn unknowns(shape: Shape, recordings: usize) -> usize {
 pub fn in_band(all: &[Equations], shape: Shape) -> Option<Vec<Vec<Vec<f64>>>> {
     let of = all.len();
     let each = all.iter().enumerate().map(|(index, equations)| {
-        let full = columns(shape, equations, index, of)?;
-        let in_band = full.iter().map(|column| {
-            if column.is_empty() {
+        let in_band = (0..unknowns(shape, of)).map(|unknown| {
+            let column = column(shape, equations, index, unknown)?;
+            Some(if column.is_empty() {
                 vec![0.0; equations.inside.force.len()]
             } else {
-                equations.in_band(column)
-            }
+                equations.in_band(&column)
+            })
         });
-        Some(in_band.collect())
+        in_band.collect()
     });
     each.collect()
 }
@@ -61,38 +68,34 @@ pub fn with(base: &[Equations], shapes: &[Shape]) -> Option<Vec<Equations>> {
     let of = base.len();
     for (index, equations) in all.iter_mut().enumerate() {
         for shape in shapes {
-            let full = columns(*shape, equations, index, of)?;
-            equations.add(&full);
+            for unknown in 0..unknowns(*shape, of) {
+                let column = column(*shape, equations, index, unknown)?;
+                equations.add(&column);
+            }
         }
     }
     Some(all)
 }
 
-/// How the force of each effect changes with its size, as columns for one recording.
-fn slopes(
+/// How the force of an effect with these factors changes with its size, for one recording.
+fn slope(
     equations: &Equations,
-    shapes: &[Shape],
+    shape: Shape,
     factors: &[f64],
-    (index, of): (usize, usize),
+    recording: usize,
     range: f64,
-) -> Option<Vec<Vec<f64>>> {
-    let mut at = 0;
-    let mut out = Vec::new();
-    for shape in shapes {
-        let [_, little] = shape.steps(range);
-        let larger = columns(shape.resized(1.0 + little), equations, index, of)?;
-        let smaller = columns(shape.resized(1.0 - little), equations, index, of)?;
-        let mut slope = vec![0.0; equations.raw.force.len()];
-        let own = factors.get(at..)?;
-        for ((larger, smaller), factor) in larger.iter().zip(&smaller).zip(own) {
-            for ((slot, a), b) in slope.iter_mut().zip(larger).zip(smaller) {
-                *slot += factor * (a - b) / (2.0 * little);
-            }
+) -> Option<Vec<f64>> {
+    let [_, little] = shape.steps(range);
+    let (longer, shorter) = (shape.resized(1.0 + little), shape.resized(1.0 - little));
+    let mut slope = vec![0.0; equations.raw.force.len()];
+    for (unknown, factor) in factors.iter().enumerate() {
+        let larger = column(longer, equations, recording, unknown)?;
+        let smaller = column(shorter, equations, recording, unknown)?;
+        for ((slot, a), b) in slope.iter_mut().zip(&larger).zip(&smaller) {
+            *slot += factor * (a - b) / (2.0 * little);
         }
-        at += unknowns(*shape, of);
-        out.push(slope);
     }
-    Some(out)
+    Some(slope)
 }
 
 /// The solution with all that may change: sizes as further unknowns.
@@ -101,9 +104,15 @@ fn joint(all: &[Equations], solved: &Solved, shapes: &[Shape], range: f64) -> Op
     let factors = solved.theta.get(solved.terms.width()..)?;
     let mut wider = all.to_vec();
     for (index, equations) in wider.iter_mut().enumerate() {
-        let slopes = slopes(equations, shapes, factors, (index, of), range)?;
         equations.above = None;
-        equations.add(&slopes);
+        let mut at = 0;
+        for shape in shapes {
+            let count = unknowns(*shape, of);
+            let own = factors.get(at..at + count)?;
+            let slope = slope(equations, *shape, own, index, range)?;
+            equations.add(&slope);
+            at += count;
+        }
     }
     solve(&wider, solved.terms)
 }

@@ -70,24 +70,22 @@ impl Shape {
         matches!(self, Self::Cogging { .. })
     }
 
-    /// A column for each unknown. `None` where speed or position is not known.
-    pub fn columns(self, raw: &Raw) -> Option<Vec<Vec<f64>>> {
+    /// The column of one of its unknowns: of a long recording all of them are many megabytes.
+    /// `None` where speed or position is not known.
+    pub fn column(self, raw: &Raw, unknown: usize) -> Option<Vec<f64>> {
         let (position, velocity) = (raw.position.as_ref()?, raw.velocity.as_ref()?);
-        Some(match self {
+        match self {
             Self::Cogging { per_unit } => {
-                let angles = position.iter().map(|x| TAU * per_unit * x);
-                let (sines, cosines) = angles.map(libm::sincos).unzip();
-                vec![sines, cosines]
+                let wave = if unknown == 0 { libm::sin } else { libm::cos };
+                let values = position.iter().map(|x| wave(TAU * per_unit * x));
+                Some(values.collect())
             }
-            Self::Backlash(play) => {
-                let mut columns = play.differences(raw)?.to_vec();
-                columns.truncate(self.width());
-                columns
-            }
+            Self::Backlash(play) if unknown == 0 => play.accelerations(raw),
+            Self::Backlash(play) => play.rubbing(raw),
             Self::Stribeck { speed } => {
                 let fall = |v: &f64| sign(*v) * libm::exp(-(v / speed) * (v / speed));
-                vec![velocity.iter().map(fall).collect()]
+                Some(velocity.iter().map(fall).collect())
             }
-        })
+        }
     }
 }
