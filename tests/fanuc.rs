@@ -163,17 +163,6 @@ fn taps_return_faster_and_peck() {
     assert!(notes("fanuc", program).contains(&"tap-pecks"));
 }
 
-/// Haas: J of G84 is how many times as fast the tap comes out, until the next cycle.
-#[test]
-fn a_tap_returns_as_j_says() {
-    let program = "S500 M3\nG0 Z10.\nG99 G84 X5. Z-5. R2. F500. J2\nX10.\nG80\nG84 X1. Z-5. R2.\n";
-    assert_snapshot!(moves("haas", program), @"");
-    for wrong in ["J0", "J1.5", "J10"] {
-        let found = moves("haas", &format!("S500 M3\nG84 X5. Z-5. R2. F500. {wrong}\n"));
-        assert!(found.contains("J of a tap is how many times as fast"), "{found}");
-    }
-}
-
 /// Lengths without a point are noted wherever they stand; a level of G05.1 is none.
 #[test]
 fn numbers_without_a_point_are_noted_in_corners_and_arguments() {
@@ -312,40 +301,6 @@ fn alarms_and_state() {
         time.contains("unknown-value: #1 depends on the time"),
         "{time}"
     );
-}
-
-/// What the program itself has put in force, and offsets that the machine file gives. G54 to G59
-/// are group 14 on a Fanuc, 12 on a Haas ("Macros", group codes) and on a Mitsubishi.
-#[test]
-fn state_that_macros_read() {
-    let program = "G21 G90 G55\nG43 H7 Z50.\n#1=#4111\n#2=#4008\n#3=#GROUP\n#4=#5242\nG49\n#5=#4008\nG0 X[#1] Y[#2]\nX#3 Y#4 Z#5\n";
-    let offsets = "[offsets]\nG55 = { X = 10, Y = 20, Z = 30 }\n";
-    for (controller, group) in [("fanuc", "4014"), ("haas", "4012"), ("mitsubishi", "4012")] {
-        let found = moves_on(
-            &machine(controller, offsets),
-            &program.replace("GROUP", group),
-        );
-        let last = found.lines().rev().take(2).collect::<Vec<_>>();
-        assert_eq!(
-            last[0], "10 rapid X65.0000 Y40.0000 Z79.0000",
-            "{controller}: {found}"
-        );
-        assert_eq!(
-            last[1], "9 rapid X17.0000 Y63.0000",
-            "{controller}: {found}"
-        );
-    }
-    for (controller, unknown) in [
-        ("fanuc", "#1=#4012"),
-        ("haas", "#1=#4014"),
-        ("fanuc", "#1=#5261"),
-    ] {
-        let found = moves(controller, &format!("{unknown}\nG0 X#1\n"));
-        assert!(
-            found.contains("unknown-value: #1 depends on the state of the control"),
-            "{found}"
-        );
-    }
 }
 
 /// Mitsubishi M700V: an `,F` on G0 is not documented well enough to be followed.

@@ -164,3 +164,46 @@ fn the_block_that_ends_the_program_keeps_its_motion_word() {
         shop.get("out.nc")
     );
 }
+
+/// What the program itself has put in force, and offsets that the machine file gives. G54 to G59
+/// are group 14 on a Fanuc, 12 on a Haas ("Macros", group codes) and on a Mitsubishi.
+#[test]
+fn state_that_macros_read() {
+    let program = "G21 G90 G55\nG43 H7 Z50.\n#1=#4111\n#2=#4008\n#3=#GROUP\n#4=#5242\nG49\n#5=#4008\nG0 X[#1] Y[#2]\nX#3 Y#4 Z#5\n";
+    let offsets = "[offsets]\nG55 = { X = 10, Y = 20, Z = 30 }\n";
+    for (controller, group) in [("fanuc", "4014"), ("haas", "4012"), ("mitsubishi", "4012")] {
+        let machine = machine_of(controller, offsets, "XYZ", "");
+        let found = listing(&program.replace("GROUP", group), &machine, None);
+        let last = found.lines().rev().take(2).collect::<Vec<_>>();
+        assert_eq!(last[0], "10 rapid X65 Y40 Z79", "{controller}: {found}");
+        assert_eq!(last[1], "9 rapid X17 Y63", "{controller}: {found}");
+    }
+    for (controller, unknown) in [
+        ("fanuc", "#1=#4012"),
+        ("haas", "#1=#4014"),
+        ("fanuc", "#1=#5261"),
+    ] {
+        let found = refused(controller, &format!("{unknown}\nG0 X#1\n"));
+        assert!(
+            found.contains("#1 depends on the state of the control"),
+            "{found}"
+        );
+    }
+}
+
+/// Haas: J of G84 is how many times as fast the tap comes out, until the next cycle.
+#[test]
+fn a_tap_returns_as_j_says() {
+    let program = "S500 M3\nG0 Z10.\nG99 G84 X5. Z-5. R2. F500. J2\nX10.\nG80\nG84 X1. Z-5. R2.\n";
+    assert_eq!(moves("haas", program), "");
+    for wrong in ["J0", "J1.5", "J10"] {
+        let found = refused(
+            "haas",
+            &format!("S500 M3\nG84 X5. Z-5. R2. F500. {wrong}\n"),
+        );
+        assert!(
+            found.contains("J of a tap is how many times as fast"),
+            "{found}"
+        );
+    }
+}

@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::refusal;
+use super::{moves, refusal};
+
 /// What is not followed is refused by its name.
 #[test]
 fn refusals_name_the_construct() {
@@ -443,4 +444,25 @@ fn refusals_name_the_construct() {
         }
     }
     assert_eq!(wrong, "");
+}
+
+/// Words of the control move nothing or are refused, whatever file there is; as labels they are
+/// what the program says.
+#[test]
+fn words_of_the_control_are_no_subprograms() {
+    let program = "G0 X1\nDRFOF\nMMC(\"CYCLES,PICTURE_ON,A.COM\",\"A\")\nTRAILOF(Y,X)\nGOTOF START\nX5\nSTART:\nX2\nM30\n";
+    assert_eq!(moves(program), "1 rapid X1\n8 rapid X2\n");
+    for word in [
+        "PRESETON(X,100)",
+        "WRITE(ERR,\"A\",\"B\")",
+        "CTABDEF(X,Y,1,0)",
+        "GET(X)",
+    ] {
+        let found = refusal(word);
+        let name = word.split('(').next().unwrap();
+        assert!(
+            found.starts_with(&format!("1 unsupported-word: {name} is ")),
+            "{found}"
+        );
+    }
 }
