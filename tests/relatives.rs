@@ -195,7 +195,11 @@ fn state_that_macros_read() {
 #[test]
 fn a_tap_returns_as_j_says() {
     let program = "S500 M3\nG0 Z10.\nG99 G84 X5. Z-5. R2. F500. J2\nX10.\nG80\nG84 X1. Z-5. R2.\n";
-    assert_eq!(moves("haas", program), "");
+    assert_eq!(
+        moves("haas", program),
+        "2 rapid Z10\n3 rapid X5\n3 rapid Z2\n3 tap Z-5 F500\n3 tap Z2 F1000\n4 rapid X10\n4 rapid\n\
+         4 tap Z-5 F500\n4 tap Z2 F1000\n6 rapid X1\n6 rapid\n6 tap Z-5 F500\n6 tap Z2 F500\n"
+    );
     for wrong in ["J0", "J1.5", "J10"] {
         let found = refused(
             "haas",

@@ -44,7 +44,7 @@ fn quote(reason: &mut Diagnostic, text: &[u8]) {
         return;
     }
     let written = excerpt(&reason.text, QUOTED);
-    reason.message += &format!(", written as `{written}`");
+    reason.message = format!("{}, written as `{written}`", reason.message);
     let span = Span::new(0, text.len());
     let shown = Diagnostic::error(reason.rule, "").at(reason.line, span, text);
     reason.text = shown.text;

@@ -33,6 +33,7 @@ mod flow;
 mod g_codes;
 mod given;
 mod grbl;
+mod grbl_words;
 mod frame;
 mod isg;
 mod knob;

@@ -5,6 +5,7 @@ use arrayvec::ArrayVec;
 use super::code::{GCode, Motion, Own};
 use super::dialect::dialect_code;
 use super::g_codes::{code_number, exact_once};
+use super::grbl_words::note_word;
 use super::letters::{AXIS_LETTERS, POLAR, SLOTS, bit, letter_of, slot};
 use super::report::Report;
 use super::special::special_code;
@@ -221,6 +222,9 @@ impl Words {
             report.refused_g(word, &controller.language);
             return;
         };
+        if controller.language.loose_o_words {
+            note_word(number, word.span, report);
+        }
         if self.groups & code.group() != 0 && !matches!(code, GCode::Ignored | GCode::ExactOnce) {
             if controller.language.dialect.last_g_counts && self.replace(code, number, word.span) {
                 let message = "of several G words of one group in a block the last counts";
