@@ -40,13 +40,14 @@ pub(super) fn quote_program(
 
 /// Shows a block as it is, and names what would be written.
 fn quote(reason: &mut Diagnostic, text: &[u8]) {
-    if reason.text_offset > 0 || text.starts_with(&reason.text) && reason.text.len() == text.len() {
+    let span = Span::new(0, text.len());
+    let shown = Diagnostic::error(reason.rule, "").at(reason.line, span, text);
+    if shown.text == reason.text {
         return;
     }
     let written = excerpt(&reason.text, QUOTED);
     reason.message = format!("{}, written as `{written}`", reason.message);
-    let span = Span::new(0, text.len());
-    let shown = Diagnostic::error(reason.rule, "").at(reason.line, span, text);
     reason.text = shown.text;
-    (reason.span, reason.column) = (shown.span, shown.column);
+    (reason.span, reason.column, reason.text_offset) =
+        (shown.span, shown.column, shown.text_offset);
 }
