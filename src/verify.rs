@@ -34,6 +34,9 @@ pub struct Prediction {
     pub curve: Curve,
     /// Of the axes that the recording has a power of, with points at the same times.
     pub axes: Vec<AxisCurve>,
+    /// The first line that moves from an unknown start: there the curve is the most that may be
+    /// drawn, and those of axes have no points.
+    pub unknown_line: Option<u64>,
 }
 
 /// The prediction for a recording: so fine that it can be compared with it, and with what is
@@ -67,9 +70,15 @@ pub fn predicted<R: Read + Seek + Send>(
         with_regeneration: has_regeneration(log),
         whole: Vec::new(),
         axes: axes.collect(),
+        unknown_line: None,
     };
     series(input, machine, options, step_s, &mut points)?;
-    let Points { whole, axes, .. } = points;
+    let Points {
+        whole,
+        axes,
+        unknown_line,
+        ..
+    } = points;
     // At both ends the axes stand; a spindle may turn at one of them.
     let ends = [whole.first(), whole.last()];
     let rest_w = ends.into_iter().flatten().map(|(_, w, _)| *w);
@@ -81,6 +90,7 @@ pub fn predicted<R: Read + Seek + Send>(
     Ok(Prediction {
         curve,
         axes: axes.into_iter().map(|it| it.curve).collect(),
+        unknown_line,
     })
 }
 
@@ -102,6 +112,7 @@ struct Points<'m> {
     with_regeneration: bool,
     whole: Vec<(f64, f64, u64)>,
     axes: Vec<AxisPoints<'m>>,
+    unknown_line: Option<u64>,
 }
 
 struct AxisPoints<'m> {
@@ -120,6 +131,9 @@ impl SeriesSink for Points<'_> {
             drawn_w
         };
         self.whole.push((time_s, power_w, line));
+        if self.unknown_line.is_none() && !instant.unknown_axes.is_empty() {
+            self.unknown_line = Some(line);
+        }
         for own in &mut self.axes {
             let at = instant.axes.get(own.index);
             if let Some(at) = at.filter(|at| !at.power_w.is_nan()) {

@@ -62,6 +62,12 @@ pub fn run(args: &VerifyArgs, terminal: Terminal) -> Result<Verdict> {
             return Ok(Verdict::Refused);
         }
     };
+    if let Some(line) = predicted.unknown_line {
+        terminal.note(format_args!(
+            "line {line} moves from an unknown start: the prediction is the most that it may draw \
+             there, and has no power of its axes; give --tool-table, --parameters or the offsets"
+        ));
+    }
     let log = args.log.display().to_string();
     let found = overlay(&predicted.curve, &predicted.axes, &trace).with_context(|| log.clone())?;
     let names = VerifiedNames {

@@ -293,3 +293,17 @@ fn loops_are_not_contradicted_by_factors() {
     let message = "the loops of axis X make a factor of 1.117, and its power shows 1.2";
     assert!(ran.stderr.contains(message), "{}", ran.stderr);
 }
+
+/// Where a move starts from a place that is not known, the prediction is a bound, and says so.
+#[test]
+fn an_unknown_start_is_noted() {
+    let shop = shop();
+    let known = ["verify", "part.nc", "log.csv", "-m", "mill.toml"];
+    assert!(!shop.run(&known).stderr.contains("unknown start"));
+    shop.put("part.nc", PROGRAM.replace("G1 F500 Y260", "G43 H1 Z20"));
+    let ran = shop.run(&known);
+    let expected = "gwatt: note: line 8 moves from an unknown start: the prediction is the most \
+                    that it may draw there, and has no power of its axes; give --tool-table, \
+                    --parameters or the offsets";
+    assert!(ran.stderr.contains(expected), "{}", ran.stderr);
+}

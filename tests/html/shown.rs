@@ -306,6 +306,7 @@ fn a_move_from_an_unknown_start_has_its_time() {
     assert!((begins_s - own(1, "start_s")).abs() < 2e-6);
     assert!((ends_s - own(2, "start_s")).abs() < 2e-6);
     assert!((drawn_w[unknown[0]].as_f64().unwrap() - own(1, "peak_w")).abs() < 1.0);
+    assert!(shares["fed_back_j"].is_null());
     let series = desk.get("series.csv");
     let before = series.lines().filter(|it| it.starts_with("before,"));
     let cells: Vec<Vec<&str>> = before.map(|it| it.split(',').collect()).collect();

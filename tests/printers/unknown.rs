@@ -158,7 +158,7 @@ fn drives_that_are_coupled_are_refused() {
 fn feed_modes_of_machine_tools_are_refused() {
     for mode in ["G93", "G95"] {
         for found in [marlin(mode), klipper(mode)] {
-            let expected = "is a feed mode that printers do not have";
+            let expected = "is a feed mode that not all firmware of printers has";
             let expected = format!("unsupported-code: {mode} {expected}");
             assert!(found.starts_with(&expected), "{found}");
         }

@@ -111,7 +111,8 @@ fn kinks(
 
 /// Where a function changes its sign between two instants, at which it has these values.
 ///
-/// Source: regula falsi by Illinois (Dowell and Jarratt 1971).
+/// Source: regula falsi by Illinois (Dowell and Jarratt 1971), halving where that leaves the
+/// interval.
 fn zero(
     value: impl Fn(f64) -> f64,
     [mut a, mut b]: [f64; 2],
@@ -122,22 +123,23 @@ fn zero(
         if (b - a).abs() <= near {
             break;
         }
-        let t = b - at_b * (b - a) / (at_b - at_a);
+        let (low, high) = (a.min(b), a.max(b));
+        let by_chord = b - at_b * (b - a) / (at_b - at_a);
+        let t = if by_chord > low && by_chord < high {
+            by_chord
+        } else {
+            0.5 * (a + b)
+        };
         let at_t = value(t);
         if at_t == 0.0 {
             return t;
         }
-        if at_t * at_b < 0.0 {
-            (a, at_a) = (b, at_b);
-        } else {
+        if (at_t > 0.0) == (at_b > 0.0) {
             at_a *= 0.5;
+        } else {
+            (a, at_a) = (b, at_b);
         }
-        // Closer than rounding shows.
-        let last = (t - b).abs() <= near;
         (b, at_b) = (t, at_t);
-        if last {
-            break;
-        }
     }
     b
 }

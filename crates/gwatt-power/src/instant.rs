@@ -53,7 +53,7 @@ pub struct Instant {
     pub unknown_axes: AxisSet,
     /// Speed along the path, mm/s; 0 where there is none, the largest from an unknown start.
     pub path_mm_s: f64,
-    /// The spindle; NaN but for cutting where it follows an X that moves from an unknown start.
+    /// The spindle; NaN but for cutting where it follows X in a move from an unknown start.
     pub spindle: SpindleInstant,
     /// What each converter draws, base load included, W; what is fed back is
     /// taken off where the converter credits it.

@@ -7,8 +7,9 @@ use serde_json::{Value, json};
 use super::block::Block;
 use super::cell::Cell;
 use super::columns::{column, drawn, figure, known, share, time, words};
+use super::door::{BASE, UNKNOWN};
 use super::figures;
-use super::shares::{BASE, Moment, PageSeries, UNKNOWN};
+use super::shares::{Moment, PageSeries};
 use super::shown::Page;
 use super::voltage;
 use crate::machine::{ALL_AXES, AXES, RapidPath};
@@ -207,11 +208,8 @@ pub(super) fn channel_places(page: &Page<'_>) -> Vec<usize> {
     let axes = (0..AXES).filter(|axis| has(*axis)).map(|axis| axis + 2);
     let has_spindle = page.machines().any(|it| it.spindle.is_some());
     let spindle = [AXES + 2, AXES + 3].into_iter().filter(|_| has_spindle);
-    let series = [page.before, page.after].into_iter().flatten();
-    let unknown = series
-        .filter(|it| it.has_unknown())
-        .map(|_| UNKNOWN)
-        .take(1);
+    let mut series = [page.before, page.after].into_iter().flatten();
+    let unknown = series.any(PageSeries::has_unknown).then_some(UNKNOWN);
     axes.chain(spindle).chain([BASE]).chain(unknown).collect()
 }
 
@@ -237,6 +235,7 @@ fn shares(page: &Page<'_>, series: &PageSeries) -> Value {
         "to_s": if series.is_whole() { Value::Null } else { column(spans.iter().map(|it| time(it.to_s))) },
         "up": up,
         "down": down,
-        "fed_back_j": figure(series.fed_back_j),
+        // Of bounds no energy can be made.
+        "fed_back_j": (!series.has_unknown()).then(|| figure(series.fed_back_j)),
     })
 }

@@ -8,6 +8,9 @@ use crate::machine::AXES;
 
 /// Values of a sample.
 pub(super) const VALUES: usize = AXES + 6;
+/// The places of the base load and of moves from an unknown start among the values of a sample.
+pub(super) const BASE: usize = AXES + 4;
+pub(super) const UNKNOWN: usize = AXES + 5;
 
 /// Values at an instant: what is drawn and fed back, then the axes, the spindle, cutting,
 /// what is left (the base load and switched loads), and what moves from an unknown start may draw.

@@ -3,9 +3,9 @@
 use std::io;
 
 use super::block::Block;
-use super::door::{Door, Sample, VALUES};
+use super::door::{BASE, Door, Sample, UNKNOWN, VALUES};
 use super::rows::PageRows;
-use crate::machine::{AXES, Machine};
+use crate::machine::Machine;
 use crate::pipeline::SeriesSink;
 use crate::power::{Instant, VoltageCurve};
 
@@ -17,10 +17,6 @@ const APART: f64 = 2e-3;
 const ROUNDING: f64 = 1e-9;
 /// See [`ROUNDING`].
 const ROUNDING_S: f64 = 1e-9;
-
-/// The places of the base load and of moves from an unknown start among the values of a sample.
-pub(super) const BASE: usize = AXES + 4;
-pub(super) const UNKNOWN: usize = AXES + 5;
 
 /// Which program a series shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -109,7 +105,7 @@ impl PageSeries {
 
     /// Whether there are moves from an unknown start.
     pub(super) fn has_unknown(&self) -> bool {
-        let spans = &mut self.spans.iter();
+        let mut spans = self.spans.iter();
         spans.any(|it| it.drawn.values_w[UNKNOWN] > 0.0)
     }
 

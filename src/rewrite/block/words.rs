@@ -27,7 +27,7 @@ impl Rewriter<'_> {
         }
         if !facts.uses_motion {
             if own.is_none() && view.before.motion != view.after.motion {
-                // The end of a program puts another word in force by itself.
+                // The block puts another word in force by itself, as the end of a program does.
                 self.written.motion = view.after.motion;
             }
             return;

@@ -75,7 +75,12 @@ impl Control<'_> {
     pub(super) fn tap_return_by_word(&self) -> Option<f64> {
         let held = &self.special.held;
         let by_h = held.tap_h.filter(|percent| *percent >= 1.0);
-        by_h.map(|percent| percent / 100.0).or(held.tap_j)
+        // Whether J holds for the holes after its own is not known: the faster counts.
+        let usual = self.machine.controller.language.tap_return_factor;
+        let by_j = held
+            .tap_j
+            .map(|multiple| multiple.max(usual.unwrap_or(1.0)));
+        by_h.map(|percent| percent / 100.0).or(by_j)
     }
 
     /// The speed of a tap, mm/s, where it is not that of the feed mode.

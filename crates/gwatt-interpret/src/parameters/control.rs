@@ -33,7 +33,7 @@ impl Control<'_> {
             4001..=4021 => self.modal_code(number),
             4120 if self.tools.selected_known().is_none() => return Read::Unknown(TOOL),
             4120 => self.tools.selected_known().map(f64::from),
-            4111 => self.tools.length_number().map(f64::from),
+            4111 if self.dialect().lathe.is_none() => self.tools.length_number().map(f64::from),
             4109 => self.modal.feed.as_ref().map(|feed| feed.value),
             4119 => Some(self.modal.spindle_rpm),
             5001..=5009 => self.place(axis(5001)),
@@ -83,10 +83,11 @@ impl Control<'_> {
             },
             4006 if self.modal.mm_per_unit == 1.0 => 21.0,
             4006 => 20.0,
-            4008 => match self.tools.length_form() {
+            4008 if self.dialect().lathe.is_none() => match self.tools.length_form() {
                 None => 49.0,
+                Some(ToolLength::On) => 43.0,
                 Some(ToolLength::Reversed) => 44.0,
-                Some(_) => 43.0,
+                Some(_) => return None,
             },
             _ if self.dialect().work_offset_group.map(u32::from) == Some(number - 4000) => {
                 match self.position.offsets().system {

@@ -12,7 +12,7 @@ pub(crate) const RULES: LanguageRules = LanguageRules {
         _ => common_g_code(number),
     },
     refused_g: |number| match number {
-        930 | 950 => "a feed mode that printers do not have",
+        930 | 950 => "a feed mode that not all firmware of printers has",
         _ => refused_g_name(number),
     },
     is_state_word: |_| false,

@@ -119,16 +119,18 @@ const DATA: &[&str] = &[
     "PROTD",
     "PROTS",
     "DRFOF",
-    // Ends of what is refused where it begins.
-    "CORROF",
-    "FENDNORM",
-    "CUTCONOF",
-    "CP",
+    // How lengths follow a tool carrier, which is refused.
     "TCOABS",
     "TCOFR",
     "TCOFRX",
     "TCOFRY",
     "TCOFRZ",
+    // Corners without a lower feed.
+    "FENDNORM",
+    // Ends of what is refused where it begins.
+    "CORROF",
+    "CUTCONOF",
+    "CP",
     "TRAILOF",
     "LEADOF",
     "EGOFS",
@@ -259,7 +261,6 @@ const REFUSED: &[(&str, &str)] = &[
     ("PTPG0", "travel that is not along the path"),
     ("CUTCON", "a compensation that stays as it is"),
     ("CUTCONON", "a compensation that stays as it is"),
-    ("FENDOF", "a feed that is lowered at corners"),
     ("NEWCONF", "machine data that the program may have changed"),
     ("FXS", "travel to a fixed stop"),
     ("FOCON", "travel against a torque"),
@@ -319,7 +320,8 @@ const REFUSED: &[(&str, &str)] = &[
     ("LONGHOLE", "a slot cycle"),
 ];
 
-/// Refused where parentheses follow: programs and labels may have these names too.
+/// Refused where parentheses follow: programs without parameters, and labels, may have these
+/// names too.
 const PROCEDURES: &[(&str, &str)] = &[
     ("PRESETON", "another value of a place where the axis stands"),
     (

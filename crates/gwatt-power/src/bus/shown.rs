@@ -12,8 +12,8 @@ use gwatt_plan::period;
 /// Halvings that find where the clamp of G96 begins.
 const HALVINGS: u32 = 60;
 
-/// A spindle of which nothing is known.
-const UNKNOWN: SpindleInstant = SpindleInstant {
+/// A spindle of which nothing is known but what it cuts with.
+const NOT_KNOWN: SpindleInstant = SpindleInstant {
     speed_rpm: f64::NAN,
     accel_rpm_s: f64::NAN,
     torque_nm: f64::NAN,
@@ -29,7 +29,7 @@ pub(super) enum Course {
     Run(SpindleTrace, f64),
     /// G96.
     Surface(Surface),
-    /// G96 next to an unknown motion of X: the most that it draws and feeds back, W.
+    /// G96 in a move from an unknown start: the most that it draws and feeds back, W.
     Unknown([f64; 2]),
 }
 
@@ -121,7 +121,7 @@ impl Turning {
             Course::Unknown(_) => None,
         };
         let mut motor_w = f64::NAN;
-        instant.spindle = UNKNOWN;
+        instant.spindle = NOT_KNOWN;
         if let Some([now, nearby]) = turns {
             let torque_nm = self.power.torque_turning_nm(now.accel, nearby.speed);
             motor_w = self.power.turned_w(now.speed, torque_nm);
@@ -147,14 +147,18 @@ impl Turning {
             return;
         };
         let more_w = self.base_load_w + cutting_w;
-        // Of what moves from an unknown start no more is credited than always is.
-        if converter.credit_regen && instant.unknown_axes.is_empty() {
+        let bounded = matches!(self.course, Course::Unknown(_)) || !instant.unknown_axes.is_empty();
+        if bounded {
+            // No more is credited than the base load, which is certain.
+            *bus_w += drawn_w + more_w;
+            *regen_w = (*regen_w + fed_back_w - self.credited_w).max(0.0);
+        } else if converter.credit_regen {
             *bus_w += motor_w + more_w;
             let uncertain_w = self.base_load_w - self.credited_w;
             *regen_w = (uncertain_w - *bus_w).max(0.0);
         } else {
             *bus_w += drawn_w + more_w;
-            *regen_w = (*regen_w + fed_back_w - self.credited_w).max(0.0);
+            *regen_w += fed_back_w;
         }
     }
 }

@@ -55,7 +55,7 @@ function compared() {
   const joule = (value) => (value === null ? "not known" : scaled(value, "J"));
   const more = after.duration_s - before.duration_s;
   const part = before.duration_s > 0 ? ` (${((100 * more) / before.duration_s).toFixed(2)} %)` : "";
-  const back = SIDES.map((which) => DATA.shares[which.name]).map((it) => (it ? joule(it.fed_back_j) : "not known"));
+  const back = SIDES.map((which) => DATA.shares[which.name]).map((it) => (it && it.fed_back_j !== null ? joule(it.fed_back_j) : "not known"));
   const over = (count) => (count > 0 ? make("small", {}, ` moves, and ${count} limits over time`) : make("small", {}, " moves"));
   element("tiles").className = "pairs";
   element("tiles").append(
@@ -86,7 +86,7 @@ function tiles() {
     tile("Peak", power(last.peak_w), of, was(power(before.peak_w))),
     tile("Time", duration(last.duration_s), after ? make("small", {}, ` ${lost >= 0 ? "" : "−"}${duration(Math.abs(lost))} ${lost >= 0 ? "lost" : "gained"}${share}`) : ""),
     tile("Energy drawn", energy(last.energy_j), after && before.energy_j !== null ? was(energy(before.energy_j)) : ""),
-    tile("Fed back", back ? energy(back.fed_back_j) : "not known", make("small", {}, ` ${fate}; peak ${power(last.regen_w)}`)),
+    tile("Fed back", back && back.fed_back_j !== null ? energy(back.fed_back_j) : "not known", make("small", {}, ` ${fate}; peak ${power(last.regen_w)}`)),
     tile("Over the limit", `${last.unfit_count}`, make("small", {}, ` of ${last.moves} moves`), was(`${before.unfit_count}`)),
   ];
   if (HEAD.limited) list.push(tile("Changed", `${HEAD.limited.edited_lines}`, make("small", {}, " lines of the program")));
