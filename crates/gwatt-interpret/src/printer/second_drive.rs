@@ -34,7 +34,7 @@ pub(super) fn refuse_second_drive(run: &mut Run<'_, '_>, what: &str, span: Span)
     let shown = gwatt_syntax::diagnostic::excerpt(span.of(run.report.text), 60);
     let message = format!("`{shown}` here is {what}: what its drive draws is not known");
     run.report.error("unsupported-word", message, span).help(
-        "for the check take it out, and describe the axis in the machine file with the mass and friction \
-             of both",
+        "for the check take it out, and describe the axis in the machine file with the mass and \
+         friction of both",
     );
 }
